@@ -1,4 +1,4 @@
-//! Diagnoses what a simulator lacks, prints it, and writes the report.
+//! Diagnoses the gap between a simulator and a record, prints it, and writes the report.
 //!
 //!     cargo run -p ringdown-lab --example diagnose_and_print [-- RECORD NOMINAL]
 
@@ -6,7 +6,7 @@
 
 use ringdown_lab::{DiagnosisOptions, Error, Nominal, Reading, Record, diagnose};
 
-/// The simulated record that the project ships, and the simulator that lacks what made it.
+/// Folder of the simulated record that the project ships, with the nominal simulator that lacks an effect.
 const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../experiments/default-record");
 
 // ANCHOR: main

@@ -6,7 +6,7 @@
 
 use ringdown_lab::{Error, EstimateOptions, Reading, Record, estimate};
 
-/// The simulated record that the project ships.
+/// Simulated record that the project ships.
 const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../experiments/default-record/record.csv");
 
 // ANCHOR: main

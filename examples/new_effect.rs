@@ -1,10 +1,10 @@
-//! Walks the recipe for a new effect: a damping that grows away from the middle, −c·θ̇·sin²θ.
+//! Walks through the recipe for a new effect: a damping that grows away from the middle, −c·θ̇·sin²θ.
 //!
-//! An effect is a line of the registry and cannot be added from outside of the workspace. This example makes a record of a
-//! system that has one before the program knows it, shows what the diagnosis says of such a record, and then prints
-//! the steps with the files that teach it the effect. The test
-//! `recipe::a_new_effect_takes_three_files_and_is_diagnosed_and_hidden` follows the same steps with the same files in a copy of
-//! the workspace.
+//! An effect is an entry of the registry and cannot be added from outside of the workspace. This example
+//! simulates a record of a system with an effect that the program does not know, and prints the diagnosis of
+//! that record. Then it prints the steps and the files that add the effect. The test
+//! `recipe::a_new_effect_takes_three_files_and_is_diagnosed_and_hidden` follows the same steps with the same
+//! files in a copy of the workspace.
 //!
 //!     cargo run -p ringdown-lab --example new_effect
 
@@ -13,12 +13,13 @@
 use ringdown_lab::{Arrays, DiagnosisOptions, Error, Nominal, Origin, Record, diagnose};
 
 // ANCHOR: record
-/// The new law: torque per inertia of a damping that grows away from the middle.
+/// Returns the new law's torque per inertia: a damping that grows away from the middle.
 fn sine_drag(position: f64, velocity: f64) -> f64 {
     -0.3 * velocity * position.sin().powi(2)
 }
 
-/// A record of an arm with it, integrated by the classical Runge–Kutta method; every sample lies on the encoder's steps.
+/// Simulates a record of an arm with the new law by the classical Runge–Kutta method; values are rounded to
+/// the encoder's steps.
 fn record(arm: &Nominal) -> Result<Record, Error> {
     let own = arm.coefficients();
     let acceleration = |position: f64, velocity: f64| {
@@ -47,7 +48,7 @@ fn record(arm: &Nominal) -> Result<Record, Error> {
 // ANCHOR_END: record
 
 // ANCHOR: main
-/// The steps of CONTRIBUTING.md: where, and what goes there.
+/// Steps of CONTRIBUTING.md: the file, and the text to add to it.
 const STEPS: [(&str, &str); 7] = [
     ("crates/dynamics/src/effects/sine_drag.rs", include_str!("../tests/recipe/law.rs")),
     ("crates/dynamics/src/effects/mod.rs", "mod sine_drag;\npub use sine_drag::SineDrag;\n"),

@@ -1,4 +1,5 @@
-//! Writes an estimator and puts it beside least squares: the median of the slopes between all pairs of peaks.
+//! Implements an estimator and compares it with least squares: the median of the slopes between all pairs of
+//! peaks.
 //!
 //! Theil, Proceedings of the Royal Netherlands Academy of Sciences 53 (1950) 386; Sen, Journal of the American
 //! Statistical Association 63 (1968) 1379.
@@ -13,7 +14,8 @@ use ringdown_lab::contract::{
 use ringdown_lab::{Error, EstimateOptions, Nominal, Simulation, estimate, estimate_with};
 
 // ANCHOR: estimator
-/// The Theil–Sen estimator: the median slope of ln A over all pairs of peaks. Almost a third of the peaks may be wrong.
+/// Theil–Sen estimator: the median slope of ln A over all pairs of peaks. Almost a third of the peaks may be
+/// wrong.
 struct TheilSen;
 
 impl Estimator for TheilSen {
@@ -41,7 +43,7 @@ impl Estimator for TheilSen {
     }
 }
 
-/// The middle value; 0 where there is none.
+/// Returns the middle value; 0 if there are no values.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or_default()
@@ -51,7 +53,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 // ANCHOR: main
 fn main() -> Result<(), Error> {
     let arm = Nominal::swinging(3.5, 0.01)?;
-    // Some readings of this encoder are wrong, by half a radian.
+    // Some readings of this encoder are wrong by half a radian.
     let record = Simulation::of(&arm)
         .with_effect("outliers", &[("probability", 0.003), ("size", 0.1)])?
         .released_at(1.0)

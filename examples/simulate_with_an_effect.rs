@@ -1,4 +1,4 @@
-//! Simulates an arm with and without air drag, and shows what the drag does to the decay.
+//! Simulates an arm with and without air drag, and shows the effect of the drag on the decay.
 //!
 //!     cargo run -p ringdown-lab --example simulate_with_an_effect
 
@@ -19,7 +19,7 @@ fn main() -> Result<(), Error> {
     let drag = effects().find(|effect| effect.id == "quadratic_drag");
     println!("drag adds the torque {}", drag.map_or("?", |effect| effect.equation));
 
-    // The slope of the logarithm of the peaks is the decay rate; drag makes it depend on the amplitude.
+    // The slope of the logarithm of the peaks is the decay rate; with drag it depends on the amplitude.
     for (name, record) in [("viscous", &viscous), ("with drag", &with_drag)] {
         let envelope = peaks(record, &EstimateOptions::default())?.envelope;
         let (times, logs) = (envelope.times_s(), envelope.log_amplitudes());

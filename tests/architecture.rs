@@ -1,12 +1,12 @@
-//! The walls of the house, asked of cargo.
+//! Tests of the dependency rules between crates, by cargo's own data.
 
 use crate::support::root;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::process::Command;
 
-/// The layer of every crate; a crate may depend on lower layers only. A crate that is not here fails
-/// the test: somebody has to say where it belongs.
+/// Returns the layer of a crate; a crate may depend on lower layers only. A crate that is missing here fails
+/// the test, so that every new crate gets a layer.
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
         "record" | "seed" | "settings" | "dynamics" => 0,
@@ -47,7 +47,7 @@ fn name(package: &Value) -> &str {
     package["name"].as_str().unwrap()
 }
 
-/// Everything a crate reaches, by any kind of dependency and with every feature on.
+/// Returns every crate that a crate depends on, by any kind of dependency and with every feature on.
 fn reach(package: &str) -> BTreeSet<String> {
     let tree = cargo(&[
         "tree",
@@ -71,7 +71,7 @@ fn arrows_point_downward_only() {
     for package in &packages {
         let own = layer(name(package)).unwrap_or_else(|| panic!("{} has no layer", name(package)));
         for dependency in package["dependencies"].as_array().unwrap() {
-            // Tests may use whatever they need, except where a test below forbids it.
+            // Tests may use any crate, unless a test below forbids it.
             if dependency["kind"] == "dev" {
                 continue;
             }
@@ -111,8 +111,8 @@ fn an_estimator_reaches_no_oracle_no_truth_and_no_other_estimator() {
     }
 }
 
-/// What generated a record is for those who make records and score answers. Tests count too: a check against
-/// the truth inside an estimator's crate would be a way in.
+/// Only crates that make records or score answers may use the truth. Tests count too: a check against the
+/// truth inside an estimator's crate would give access to it.
 #[test]
 fn only_who_makes_or_scores_records_reaches_the_truth() {
     let packages = packages();
@@ -165,7 +165,7 @@ fn only_runs_and_the_trainer_reach_the_disk_for_writing() {
         if ["runs", "trainer"].contains(&name(&package)) {
             continue;
         }
-        // What tests write is no business of a crate's.
+        // Only dependencies of the crate itself count, not those of its tests.
         let own = package["dependencies"].as_array().unwrap().iter().filter(|other| other["kind"].is_null());
         let direct: Vec<&str> = own.map(name).collect();
         assert!(!direct.contains(&"tempfile"), "{}", name(&package));

@@ -1,4 +1,4 @@
-//! Bad input gets exit code 2 and one clear message; nothing panics.
+//! Tests of bad input: exit code 2, one clear message, and no panic.
 
 use crate::support::{root, trainer};
 use std::path::Path;
@@ -17,7 +17,7 @@ fn refused(content: &[u8], arguments: &[&str], expected: &[&str]) {
     }
 }
 
-/// Runs the program, expects exit code 2, one line on standard error and nothing on standard output.
+/// Runs the program; expects exit code 2, one line on standard error and nothing on standard output.
 fn refusal(arguments: &[&str]) -> String {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("run");
@@ -75,7 +75,7 @@ fn a_name_that_is_nearly_right_is_answered_with_the_right_one() {
     assert!(message.contains("describes a nominal simulator by its frequency"), "{message}");
 }
 
-/// A record of a decaying oscillation, one sample a line.
+/// Returns a record of a decaying oscillation, one sample per line.
 fn decay(samples: usize) -> String {
     let mut text = "time_s,angle_rad\n".to_owned();
     for i in 0..samples {
@@ -332,7 +332,7 @@ fn studies_of_prediction() {
     assert!(message.contains("`problem.a.kind` is missing"), "{message}");
     let message = with_config("task = \"predict\"\n[problem.a]\nkind = \"exponential\"\ndead_zone = 1\n");
     assert!(message.contains(":4:1: unknown key `problem.a.dead_zone`"), "{message}");
-    // A record that is there and cannot be used is no absence.
+    // A record that exists but cannot be used does not count as absent.
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("record.csv");
     std::fs::write(&file, "time_s,angle_rad\n0,1\n").unwrap();

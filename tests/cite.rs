@@ -1,9 +1,10 @@
-//! `trainer cite`: the literature of what was used, as BibTeX that others can read.
+//! Tests of `trainer cite`: the literature of a run's methods as BibTeX.
 
 use crate::support::{result, trainer};
 use std::collections::BTreeMap;
 
-/// Entries by key: kind and fields. A reader of its own, strict about braces, fields and commas.
+/// Parses entries by key: kind and fields. This parser is independent of the program and strict about braces,
+/// fields and commas.
 fn read(text: &str) -> BTreeMap<String, (String, BTreeMap<String, String>)> {
     let text: String =
         text.lines().filter(|line| !line.starts_with('%')).map(|line| format!("{line}\n")).collect();

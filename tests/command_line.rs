@@ -1,4 +1,4 @@
-//! What every command has in common: its options, and what becomes of what it prints.
+//! Tests of what all commands share: options and output.
 
 use crate::support::{root, trainer};
 use std::fs::File;
@@ -75,7 +75,7 @@ fn a_reader_that_goes_away_is_none() {
     assert!(output.stderr.is_empty());
 }
 
-/// Expects exit code 2 and these words in the one message.
+/// Expects exit code 2 and these words in the only message.
 fn refused(arguments: &[&str], expected: &[&str]) {
     let output = trainer(arguments);
     let message = String::from_utf8(output.stderr).unwrap();

@@ -1,4 +1,4 @@
-//! `task = "compare"`: the paper's methods side by side.
+//! Tests of `task = "compare"`: the paper's methods side by side.
 
 use crate::support::{measured, number, result, trainer};
 use serde_json::Value;
@@ -25,7 +25,7 @@ fn every_method_agrees_on_the_shipped_record() {
     }
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(page.to_lowercase().contains("simulated record"));
-    // The library's line is in every comparison, and is the reference's.
+    // Every comparison has the library's result, which agrees with the reference.
     let library = &result["libraries"][0];
     assert_eq!((&library["id"], &library["family"]), (&"linfa-linear".into(), &"library".into()));
     assert!(number(library, "/outcome/estimate/digits_of_agreement") > 12.0, "{library}");
@@ -42,7 +42,7 @@ fn the_papers_tables_come_out_on_its_record() {
     }
     let (code, result, _) = result(&["configs/paper.toml", "fit.seeds=2"]);
     assert_eq!(code, 0, "{result}");
-    // Table 3 and section 5, to the digits printed there.
+    // Table 3 and section 5, to the printed digits.
     let printed = |path: &str, expected: &str, digits: usize| {
         assert_eq!(format!("{:.*}", digits, number(&result, path)), expected, "{path}");
     };
@@ -57,7 +57,8 @@ fn the_papers_tables_come_out_on_its_record() {
     printed("/derived/quality_factor", "57", 0);
     printed("/derived/half_life_s", "3.6", 1);
     printed("/derived/time_constant_s", "5.2", 1);
-    // Tables 4 and 5: every ζ is 0.00875301, and the paper's largest error, 0.046 %, is beaten ten times.
+    // Tables 4 and 5: every ζ is 0.00875301, and the errors are at least ten times smaller than the paper's
+    // largest, 0.046 %.
     for row in rows(&result) {
         let found = row.pointer("/outcome/estimate").unwrap_or_else(|| panic!("{row}"));
         assert_eq!(format!("{:.8}", number(found, "/zeta")), "0.00875301", "{row}");
@@ -77,12 +78,13 @@ fn methods_can_be_chosen_by_name() {
     assert_eq!(ids, ["qr", "pinn", "baseline"]);
     assert_eq!(number(estimate(&result, "qr"), "/seeds"), 1.0, "it draws nothing");
     assert_eq!(number(estimate(&result, "pinn"), "/seeds"), 2.0);
-    // The null estimator misses, and the exit code says so.
+    // The null estimator is out of tolerance, and the exit code reports it.
     assert_eq!(code, 1);
     assert_eq!(estimate(&result, "baseline")["pass"], false);
 }
 
-/// What stands beside the network holds the slope (PINN), or the weights hold the answer whatever is read (LSTM).
+/// λ does not depend on the network: the line beside it has the slope (PINN), or the weights hold the answer
+/// for any input (LSTM).
 #[test]
 fn a_table_says_what_networks_contributed() {
     let (code, result, _) = result(&["configs/compare.toml", "compare.methods=pinn,lstm,qr"]);
@@ -124,8 +126,8 @@ fn threads_do_not_change_a_bit() {
     assert_eq!(run("1"), run("2"));
 }
 
-/// A noiseless exponential has residuals too, of how peaks are placed: they are correlated, and of a size that says
-/// nothing about the decay.
+/// A noiseless exponential has residuals too, from the placement of peaks. They are correlated, and their
+/// size says nothing about the decay.
 #[test]
 fn of_an_exponential_without_noise_no_pattern_is_reported() {
     let scratch = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! What the default settings say of records whose truth is known, and what a stranger's first calls are answered with.
+//! Tests of the default settings on records with known truth, and of the answers to a new user's first
+//! commands.
 
 use crate::support::{number, result, root, trainer};
 use seed::Seed;
@@ -6,8 +7,8 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Command;
 
-/// A free decay of a linear oscillator: damping ratio, undamped rad/s, samples a second, seconds, noise and step of the
-/// sensor in initial amplitudes.
+/// Free decay of a linear oscillator: damping ratio, undamped frequency in rad/s, samples per second,
+/// seconds, noise and step of the sensor in initial amplitudes.
 struct Decay(f64, f64, f64, f64, f64, f64);
 
 const DECAYS: [Decay; 20] = [
@@ -33,7 +34,7 @@ const DECAYS: [Decay; 20] = [
     Decay(0.1, 6.0, 100.0, 8.0, 0.001, 0.0),
 ];
 
-/// The record as the text of a CSV file.
+/// Returns the record as the text of a CSV file.
 fn record(number: usize, &Decay(zeta, omega, rate, seconds, noise, step): &Decay) -> String {
     use rand::RngExt;
     let mut generator = Seed::new(7).child(&format!("decay {number}")).generator();
@@ -103,7 +104,7 @@ fn a_truth_of_another_record_is_refused() {
     assert!(number(&result, "/truth/zeta_off_std_errors").abs() < 3.0, "{}", result["truth"]);
 }
 
-/// Runs the program in a folder of its own.
+/// Runs the program in another working directory.
 fn elsewhere(folder: &Path, arguments: &[&str]) -> std::process::Output {
     Command::new(env!("CARGO_BIN_EXE_trainer")).args(arguments).current_dir(folder).output().unwrap()
 }
@@ -116,7 +117,8 @@ fn a_configuration_runs_from_any_folder_and_its_copy_is_verified_there() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let verified = elsewhere(folder.path(), &["verify", "run"]);
     assert_eq!(String::from_utf8(verified.stdout).unwrap(), "run: identical\n");
-    // On the command line a path starts from the working directory; in a file, also in one below another, from the file.
+    // On the command line a path starts from the working directory; in a file, including base files, from the
+    // file's folder.
     std::fs::create_dir(folder.path().join("rig")).unwrap();
     std::fs::write(folder.path().join("rig/log.csv"), record(12, &DECAYS[12])).unwrap();
     std::fs::write(folder.path().join("rig/rig.toml"), "[data]\npath = \"log.csv\"\n").unwrap();

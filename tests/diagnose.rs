@@ -1,11 +1,12 @@
-//! `trainer diagnose`: what it leaves, what scripts may rely on, and that bad input gets one message and no name.
+//! Tests of `trainer diagnose`: its files, the contract for scripts, and refusals of bad input with one
+//! message and no named effect.
 
 use crate::support::{self, NOMINAL, number, result, trainer};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A configuration of a short decay with dry friction that the nominal simulator lacks.
+/// Configuration of a short decay with dry friction, which the nominal simulator lacks.
 const FRICTION: &str = r#"
 name = "friction"
 [record]
@@ -27,7 +28,7 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// A simulated record with its nominal simulator, in a scratch folder.
+/// Simulates a record with its nominal simulator in a scratch folder.
 fn simulated(overrides: &[&str]) -> (TempDir, String, String) {
     let scratch = tempfile::tempdir().unwrap();
     let file = support::simulated(scratch.path(), FRICTION, overrides);
@@ -40,7 +41,7 @@ fn is_interval(value: &Value) -> bool {
     })
 }
 
-/// The keys and types of the contract; more keys are allowed.
+/// Checks the keys and types of the contract; additional keys are allowed.
 fn check_contract(found: &Value) {
     assert_eq!(found["schema"], "ringdown.diagnosis/1");
     let verdict = &found["verdict"];
@@ -58,7 +59,7 @@ fn check_contract(found: &Value) {
     for id in ["none", "calibration", "unknown"] {
         assert!(ids.contains(&id), "{ids:?}");
     }
-    // Whatever is named has a probability.
+    // Every named effect has a probability.
     for id in verdict["effects"].as_array().unwrap() {
         assert!(ids.contains(&id.as_str().unwrap()), "{id} {ids:?}");
     }
@@ -134,7 +135,7 @@ fn a_missing_effect_is_named_and_the_answer_has_the_contracts_form() {
     the_report_is_derived(folder.path());
 }
 
-/// What is written loads back into the simulator and gives the record again, down to its noise.
+/// Checks that the repaired simulator can be loaded and reproduces the record down to its noise.
 fn the_repaired_simulator_runs(folder: &Path, record: &str) {
     let again = tempfile::tempdir().unwrap();
     let repaired = folder.join("repaired.toml");
@@ -156,7 +157,7 @@ fn the_repaired_simulator_runs(folder: &Path, record: &str) {
     assert!(made.len().abs_diff(measured.len()) <= 1, "{} {}", made.len(), measured.len());
     let count = made.len().min(measured.len()) as f64;
     let squares: f64 = made.iter().zip(&measured).map(|(a, b)| (a - b).powi(2)).sum();
-    // Noise 5e-4; a free run over the whole record adds what the coefficients are off by.
+    // The noise is 5e-4; a free run over the whole record adds the error of the coefficients.
     let rms = (squares / count).sqrt();
     assert!(rms < 1.5e-3, "{rms}");
     for (name, words) in [
@@ -172,7 +173,7 @@ fn the_repaired_simulator_runs(folder: &Path, record: &str) {
     }
 }
 
-/// The report follows from the folder's other files.
+/// Checks that the report can be made from the folder's other files.
 fn the_report_is_derived(folder: &Path) {
     let report = folder.join("report.html");
     let first = std::fs::read_to_string(&report).unwrap();
@@ -269,7 +270,7 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     assert_eq!((code, &found["skipped"], &found["diagnosed"]), (Some(1), &1.into(), &0.into()));
     assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
 
-    // Another record has come to lie in the case: neither is its answer kept as if it were on it, nor written over.
+    // The case now has another record: its old answer is neither accepted for that record nor overwritten.
     write(&cases, "good/record-000.csv", &decay(800, 0.7));
     let (code, found, message) = batch();
     assert_eq!((code, &found["skipped"], &found["diagnosed"]), (Some(1), &0.into(), &0.into()));
@@ -279,7 +280,7 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     assert!(changed.contains("name another folder with --out"), "{changed}");
     assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
 
-    // Nor is it kept for another simulator.
+    // The answer is not accepted for another simulator either.
     let nominal = cases.join("good/nominal.toml");
     let text = std::fs::read_to_string(&nominal).unwrap();
     std::fs::write(&nominal, text.replacen("damping = ", "damping = 1", 1)).unwrap();
@@ -294,7 +295,7 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     assert!(message.contains("there is no case in it"), "{message}");
 }
 
-/// Runs the program and expects exit code 2, one line on standard error and nothing on standard output.
+/// Runs the program; expects exit code 2, one line on standard error and nothing on standard output.
 pub(crate) fn refusal(arguments: &[&str]) -> String {
     let output = trainer(arguments);
     let message = String::from_utf8(output.stderr).unwrap();
@@ -305,7 +306,7 @@ pub(crate) fn refusal(arguments: &[&str]) -> String {
     message
 }
 
-/// Refuses a record and a nominal simulator with these words.
+/// Expects a refusal of a record and a nominal simulator with these words.
 fn refused(record: &str, nominal: &str, options: &[&str], expected: &str) {
     let scratch = tempfile::tempdir().unwrap();
     let record = write(scratch.path(), "record.csv", record);
@@ -318,7 +319,7 @@ fn refused(record: &str, nominal: &str, options: &[&str], expected: &str) {
     assert!(!out.exists(), "a refusal leaves nothing behind");
 }
 
-/// A decay of 22 rad/s, 130 samples a second.
+/// Returns a decay of 22 rad/s with 130 samples per second.
 pub(crate) fn decay(samples: usize, amplitude: f64) -> String {
     let rows = (0..samples).map(|index| {
         let t = index as f64 / 130.0;
@@ -388,7 +389,7 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
     let nominal = write(scratch.path(), "nominal.toml", NOMINAL);
     let message = refusal(&["diagnose", "no-such.csv", "--nominal", &nominal]);
     assert!(message.contains("no-such.csv: cannot be read"), "{message}");
-    // The folder of another answer is not written over.
+    // The folder of another answer is not overwritten.
     let full = scratch.path().to_str().unwrap();
     let message = refusal(&["diagnose", &record, "--nominal", &nominal, "--out", full]);
     assert!(message.contains("is not empty"), "{message}");
@@ -425,7 +426,7 @@ fn resumed_it_goes_on_or_gives_its_answer_again() {
     assert!(message.contains("was started with another seed: 0, now 1"), "{message}");
     assert!(refusal(&arguments[..6]).contains("is not empty"), "only --resume goes into it");
 
-    // What an interrupted diagnosis left.
+    // Files of an interrupted diagnosis.
     let log = std::fs::read_to_string(out.join("events.jsonl")).unwrap();
     std::fs::write(out.join("events.jsonl"), log.lines().next().unwrap().to_owned() + "\n").unwrap();
     std::fs::remove_file(out.join("diagnosis.json")).unwrap();

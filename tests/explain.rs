@@ -1,4 +1,4 @@
-//! Configurations looked at without running them: `check`, `explain`, files that stand on others.
+//! Tests of commands that look at configurations without running them: `check`, `explain`, and base files.
 
 use crate::support::{measured, result, root, trainer};
 use serde_json::Value;
@@ -16,7 +16,7 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&text(&[arguments, &["--json"]].concat())).unwrap()
 }
 
-/// The message of a refusal: exit code 2, one line.
+/// Runs the program and returns the message of a refusal: exit code 2, one line.
 fn refusal(arguments: &[&str]) -> String {
     let output = trainer(arguments);
     let message = String::from_utf8(output.stderr).unwrap();
@@ -26,7 +26,8 @@ fn refusal(arguments: &[&str]) -> String {
     message
 }
 
-/// A shipped configuration of one method is that method as it stands in the paper's table and in comparisons.
+/// The shipped configuration of one method has that method's defaults, as in the paper's table and in
+/// comparisons.
 #[test]
 fn shipped_configurations_write_an_estimators_defaults() {
     let mut compared = 0;
@@ -51,7 +52,7 @@ fn shipped_configurations_write_an_estimators_defaults() {
     assert!(compared > 50, "{compared}");
 }
 
-/// Files of a scratch folder, by name.
+/// Creates files in a scratch folder, by name.
 fn files(contents: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, content) in contents {
@@ -75,7 +76,7 @@ fn every_shipped_configuration_can_be_checked_and_names_its_task() {
             continue;
         }
         let text = std::fs::read_to_string(&path).unwrap();
-        // Its record lies beside the project, where there is one.
+        // Some configurations use measured records beside the project, which may be absent.
         let needs = text.lines().find_map(|line| line.strip_prefix("path = \"../../shared/data/"));
         if needs.is_some_and(|rest| measured(rest.split('"').next().unwrap()).is_none()) {
             let task = text.lines().find_map(|line| line.strip_prefix("task = "));
@@ -102,7 +103,7 @@ fn a_check_says_what_would_run_and_writes_nothing() {
     assert!(count() <= before);
 }
 
-/// What a check refuses is what a run refuses, in the same words.
+/// A check refuses the same configurations as a run, in the same words.
 #[test]
 fn a_check_refuses_what_a_run_refuses() {
     let scratch = tempfile::tempdir().unwrap();
@@ -179,7 +180,7 @@ fn a_value_of_a_base_is_explained_with_its_own_place() {
     assert_eq!(explained["origin"]["line"], 3);
     assert_eq!(json(&["explain", "fit.seeds", &main])["origin"]["file"], main.as_str());
 
-    // The run's folder needs none of the three files.
+    // The run's folder is independent of the three files.
     let (code, composed, run) = result(&[&main]);
     assert_eq!(code, 0, "{composed}");
     let config = path(&run, "config.toml");

@@ -1,5 +1,5 @@
-//! `trainer export`: finished runs as TensorBoard and MLflow read them, by readers of our own and, where they are
-//! installed, by theirs.
+//! Tests of `trainer export`: finished runs in the formats of TensorBoard and MLflow, read by our own readers
+//! and, if installed, by those programs.
 
 use crate::support::{result, trainer};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// A finished run, and its result.
+/// Makes a finished run and returns its result.
 fn run() -> (Value, TempDir) {
     let (code, result, folder) = result(&["configs/pinn.toml", "seed=3"]);
     assert_eq!(code, 0);
@@ -25,7 +25,7 @@ fn export(run: &Path, to: &str, store: &Path) -> Vec<PathBuf> {
     written["written"].as_array().unwrap().iter().map(|path| path.as_str().unwrap().into()).collect()
 }
 
-/// Steps and values of a trace's column.
+/// Returns steps and values of a column of the trace.
 fn column(run: &Path, name: &str) -> Vec<(i64, f64)> {
     let mut reader = csv::Reader::from_path(run.join("trace.csv")).unwrap();
     let at = reader.headers().unwrap().iter().position(|header| header == name).unwrap();
@@ -33,7 +33,7 @@ fn column(run: &Path, name: &str) -> Vec<(i64, f64)> {
     rows.map(|row| (row[0].parse().unwrap(), row[at].parse().unwrap())).collect()
 }
 
-/// Fields of a protocol buffer: number, wire type, and the value or the content's bytes.
+/// Parses the fields of a protocol buffer: number, wire type, and the value or the content's bytes.
 fn fields(mut message: &[u8]) -> Vec<(u64, Field<'_>)> {
     let mut found = Vec::new();
     while !message.is_empty() {
@@ -86,7 +86,7 @@ fn varint(message: &mut &[u8]) -> u64 {
     value
 }
 
-/// CRC-32C by a table, masked: another way to the number than the writer's.
+/// Returns the masked CRC-32C by a table, another algorithm than the writer's.
 fn masked(content: &[u8]) -> u32 {
     let table: Vec<u32> = (0..256u32)
         .map(|byte| (0..8).fold(byte, |c, _| if c & 1 == 1 { 0x82f6_3b78 ^ (c >> 1) } else { c >> 1 }))
@@ -96,7 +96,7 @@ fn masked(content: &[u8]) -> u32 {
     crc.rotate_right(15).wrapping_add(0xa282_ead8)
 }
 
-/// Scalars by tag: step and value. Every checksum is held against the content.
+/// Returns the scalars by tag: step and value. Every checksum is compared with the content.
 fn scalars(mut file: &[u8]) -> BTreeMap<String, Vec<(i64, f32)>> {
     let mut found: BTreeMap<String, Vec<(i64, f32)>> = BTreeMap::new();
     let mut first = true;
@@ -142,7 +142,7 @@ fn an_event_file_holds_the_trace_by_step_and_the_result() {
     }
     let zeta = result["estimate"]["zeta"].as_f64().unwrap() as f32;
     assert_eq!(found["result/estimate/zeta"][0].1, zeta);
-    // Again, to the bit.
+    // A second export gives the same bytes.
     export(folder.path(), "tensorboard", store.path());
     assert_eq!(std::fs::read(&written[0]).unwrap(), file);
     assert_eq!(std::fs::read_dir(folder.path().join("tensorboard")).unwrap().count(), 1);
@@ -168,7 +168,7 @@ fn a_store_holds_parameters_metrics_and_tags() {
         .collect();
     assert_eq!(steps, column(folder.path(), "loss"));
     assert!(store.join("0/meta.yaml").exists());
-    // A store that is there keeps its description, and the same run its folder.
+    // An existing store keeps its description, and the same run keeps its folder.
     std::fs::write(store.join("0/meta.yaml"), "mine").unwrap();
     assert_eq!(&export(folder.path(), "mlflow", &store)[0], run);
     assert_eq!(std::fs::read_to_string(store.join("0/meta.yaml")).unwrap(), "mine");
@@ -208,8 +208,8 @@ json.dump({
 }, sys.stdout)
 "#;
 
-/// `pip install tensorboard mlflow`; without them it says that it checked nothing. `TRACKERS_PYTHON` names another
-/// Python than `python3`.
+/// Needs `pip install tensorboard mlflow`; without them the test reports that it checked nothing.
+/// `TRACKERS_PYTHON` names another Python than `python3`.
 #[test]
 fn their_own_programs_read_what_was_written() {
     let python = std::env::var("TRACKERS_PYTHON").unwrap_or_else(|_| "python3".to_owned());

@@ -1,4 +1,4 @@
-//! What fuzzing found, and what it starts from, once more: nothing panics.
+//! Replay of the fuzzer's findings and of its corpus: nothing panics.
 
 use crate::support::root;
 use registry::ESTIMATORS;
@@ -13,7 +13,7 @@ fn replay(target: &str, feed: impl Fn(&[u8])) {
     let mut fed = 0;
     for kind in ["corpus", "regressions"] {
         let folder = root().join("tests/fuzz").join(kind).join(target);
-        // Not every target has had a regression.
+        // Some targets have had no regression.
         for entry in std::fs::read_dir(folder).into_iter().flatten() {
             feed(&std::fs::read(entry.unwrap().path()).unwrap());
             fed += 1;

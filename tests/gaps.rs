@@ -1,4 +1,4 @@
-//! Logs with a third of a second of missing cells: a gap is a gap, in an estimate and in a diagnosis.
+//! Tests of logs with a third of a second of missing cells, in an estimate and in a diagnosis.
 
 use crate::reading::write;
 use crate::support::{number, trainer};
@@ -6,21 +6,21 @@ use serde_json::Value;
 
 const OMEGA: f64 = 8.0;
 const RATE: f64 = 0.13;
-/// Samples a second.
+/// Samples per second.
 const SAMPLING: f64 = 200.0;
 
-/// Pseudo-random numbers of standard deviation 1 without a generator.
+/// Returns pseudo-random numbers of standard deviation 1 without a generator.
 fn noise(index: usize) -> f64 {
     let uniform = |at: usize| (at as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0);
     (0..12).map(|part| uniform(12 * index + part)).sum::<f64>() - 6.0
 }
 
-/// A cell, empty from the start of the gap on for a third of a second.
+/// Returns a cell, which is missing for a third of a second from the start of the gap.
 fn cell(time: f64, gap: f64, value: f64) -> String {
     if time >= gap && time < gap + 1.0 / 3.0 { "NaN".to_owned() } else { format!("{value:.7}") }
 }
 
-/// 25 s of a decay whose turning point at 16π/8 s, a peak, has no cells around it, with stamps or without.
+/// Returns 25 s of a decay, with or without stamps, whose cells around the peak at 16π/8 s are missing.
 fn decay(stamped: bool) -> String {
     let header = if stamped { "time_s,angle_rad\n" } else { "angle_rad\n" };
     (0..5000).fold(header.to_owned(), |text, index| {
@@ -31,8 +31,9 @@ fn decay(stamped: bool) -> String {
     })
 }
 
-/// So many seconds of a damped swing about a rest, pushed by six tones, by steps of a twentieth of a sampling interval; with a
-/// gap in the angle at 12 s, where the input is written all the same.
+/// Simulates a number of seconds of a damped swing about a rest position, driven by six tones, with steps of
+/// a twentieth of a sampling interval. With a gap, the angle is missing from 12 s on, while the input is
+/// still recorded.
 pub(crate) fn driven(seconds: u32, with_gap: bool) -> String {
     let tones = [(0.3, 0.1), (0.7, 1.2), (1.1, 2.5), (1.7, 3.9), (2.3, 5.0), (3.1, 0.7)];
     let input = |time: f64| -> f64 {
@@ -85,8 +86,8 @@ fn a_gap_moves_neither_frequency_nor_damping() {
     }
 }
 
-/// On an even clock a gap had been no gap: the swing jumped, and something without a name was missing. Dropouts
-/// were named where cells were missing.
+/// Regression: on an even clock a gap was ignored, so that the swing jumped and an unknown effect was
+/// reported; missing cells were reported as dropouts.
 #[test]
 fn a_diagnosis_invents_no_effect_from_a_gap() {
     let scratch = tempfile::tempdir().unwrap();

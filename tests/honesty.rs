@@ -1,4 +1,4 @@
-//! Estimates come from the envelope alone: no oracle and no truth has a way in.
+//! Tests that estimates come from the envelope alone, without access to the oracle or the truth.
 
 use crate::simulation::simulate;
 use crate::support::{result, root};
@@ -24,13 +24,13 @@ fn envelope(record: &Path) -> Envelope {
     section::<RecommendedPipeline>(*recommended).extract(&record, &clock).unwrap().envelope
 }
 
-/// Steps after which a fit ends: what has a way in shows in the first of them. Whole fits are tests that are run where asked.
+/// Steps after which a fit ends: a leak would show in the first steps. Tests with whole fits run on request.
 const FEW_STEPS: Option<u64> = Some(20);
 
-/// Each method with the bits of its λ.
+/// Methods, each with the bits of its λ.
 type Bits = Vec<(String, u64)>;
 
-/// λ of every learned method as a comparison writes it.
+/// Returns λ of every learned method from a comparison.
 fn compared(record: &Path, max_steps: Option<u64>) -> Bits {
     let methods = ESTIMATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(",");
     let mut overrides = vec![format!("compare.methods={methods}"), format!("data.path={}", record.display())];
@@ -43,7 +43,7 @@ fn compared(record: &Path, max_steps: Option<u64>) -> Bits {
     rows.iter().map(|row| (row["id"].as_str().unwrap().to_owned(), rate(row))).collect()
 }
 
-/// The same of the shipped record, whose origin and truth are stated.
+/// Returns the same for the shipped record, whose origin and truth are stated.
 fn shipped() -> &'static Bits {
     static FOUND: LazyLock<Bits> = LazyLock::new(|| compared(&shipped_record(), FEW_STEPS));
     &FOUND
@@ -53,7 +53,7 @@ fn shipped_record() -> PathBuf {
     root().join("experiments/default-record/record.csv")
 }
 
-/// λ of every method that `found` has, fitted to the shipped record where nobody has asked the oracle anything.
+/// Returns λ of every method in `found`, fitted directly to the shipped record without a call of the oracle.
 fn without_an_oracle(found: &Bits, max_steps: Option<u64>) -> Bits {
     let envelope = envelope(&shipped_record());
     let fitted = |(id, _): &(String, u64)| {
@@ -68,8 +68,8 @@ fn without_an_oracle(found: &Bits, max_steps: Option<u64>) -> Bits {
     found.iter().map(fitted).collect()
 }
 
-/// The samples of the shipped record in a file of another name, that states another origin, beside a truth that is
-/// false.
+/// Returns λ for the samples of the shipped record in a file of another name that states another origin,
+/// beside a false truth.
 fn behind_another_truth(max_steps: Option<u64>) -> Bits {
     let text = std::fs::read_to_string(shipped_record()).unwrap();
     assert!(text.contains("# origin: simulated"));
@@ -80,13 +80,14 @@ fn behind_another_truth(max_steps: Option<u64>) -> Bits {
     compared(&other, max_steps)
 }
 
-/// The poison: what the program finds, which asks the oracle first, is the same to the bit without it.
+/// Poison test: the program calls the oracle first, and without the oracle its estimates are the same to the
+/// bit.
 #[test]
 fn without_an_oracle_every_estimate_is_the_same_to_the_bit() {
     assert_eq!(&without_an_oracle(shipped(), FEW_STEPS), shipped());
 }
 
-/// The canary.
+/// Canary test: a false truth changes nothing.
 #[test]
 fn another_truth_behind_the_record_changes_no_bit() {
     assert_eq!(&behind_another_truth(FEW_STEPS), shipped());
@@ -101,7 +102,7 @@ fn whole_fits_have_no_way_in_either() {
     assert_eq!(behind_another_truth(None), found);
 }
 
-/// The same with a record of the program's own making: its sealed truth beside it, then a false one.
+/// The same for a record simulated by the program: with its sealed truth beside it, then with a false one.
 #[test]
 fn a_falsified_seal_behind_a_simulated_record_changes_no_bit() {
     let (_, folder) = simulate(&["configs/default-record.toml", "seed=5", "record.seconds=20"]);

@@ -1,4 +1,4 @@
-//! A first look at a log, and the calls that it prints.
+//! Tests of `trainer init`, the first look at a log, and of the commands that it prints.
 
 use crate::reading::{files, write};
 use crate::support::{number, trainer};
@@ -70,7 +70,8 @@ fn a_driven_log_gets_a_gain_and_no_envelope() {
     assert_eq!(diagnosed.status.code(), Some(0), "{}", String::from_utf8_lossy(&diagnosed.stderr));
 }
 
-/// What only stands beside a free decay, or is constant, is no input; a person can say so of any column.
+/// A column that is unrelated to a free decay, or constant, is not taken as an input; the user can exclude
+/// any column.
 #[test]
 fn a_column_that_the_motion_does_not_follow_is_no_input() {
     let scratch = tempfile::tempdir().unwrap();
@@ -95,7 +96,7 @@ fn a_column_that_the_motion_does_not_follow_is_no_input() {
     }
 }
 
-/// Noise has a strongest line as a swing has, but none whose frequency is known.
+/// Noise has a strongest spectral line, as a swing has, but its frequency is uncertain.
 #[test]
 fn noise_is_said_to_hold_no_swing() {
     let scratch = tempfile::tempdir().unwrap();
@@ -110,7 +111,7 @@ fn noise_is_said_to_hold_no_swing() {
     assert!(findings.contains("may hold noise and no swing"), "{found}");
 }
 
-/// A swing that grows has a negative damping and gets a note; a simulator of it has none.
+/// A growing swing has a negative damping and gets a note; its nominal simulator has zero damping.
 #[test]
 fn a_swing_that_grows_is_said_to() {
     let scratch = tempfile::tempdir().unwrap();
@@ -144,7 +145,7 @@ fn walk(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Two logs of one system in a folder: looked at together, and diagnosed as printed.
+/// Two logs of one system in a folder are looked at together, and diagnosed by the printed command.
 #[test]
 fn a_folder_of_logs_is_one_system() {
     let scratch = tempfile::tempdir().unwrap();
@@ -154,7 +155,7 @@ fn a_folder_of_logs_is_one_system() {
     of("README.txt", "two releases of the pendulum");
     let files = files();
     let plain = &files[0].1;
-    // The second release is seen from half a second on, so that it is another record.
+    // The second release starts half a second later, so that it is another record.
     let later: Vec<&str> = plain.lines().take(1).chain(plain.lines().skip(51)).collect();
     of("one.csv", plain);
     of("two.csv", &later.join("\n"));
@@ -170,7 +171,7 @@ fn a_folder_of_logs_is_one_system() {
     for words in ["logs/two.csv", "the surest of them: logs/", "trainer diagnose logs/ --nominal again/"] {
         assert!(shown.contains(words), "{words}: {shown}");
     }
-    // The simulator that lies with the records is the one that they are compared with.
+    // The nominal simulator in the folder of records is the one that they are compared with.
     std::fs::copy(scratch.path().join("again/nominal.toml"), logs.join("nominal.toml")).unwrap();
     let beside = said(&shell("trainer diagnose logs --out beside --json", scratch.path()));
     assert_eq!(beside["nominal"], "logs/nominal.toml", "{beside}");

@@ -1,11 +1,11 @@
-//! A validator for the part of JSON Schema (draft 2020-12) that `trainer schema` uses. A library for the whole
-//! of it would bring twenty-four crates and make burn build twice.
+//! Validator for the part of JSON Schema (draft 2020-12) that `trainer schema` uses. A complete library would
+//! add twenty-four crates and make burn build twice.
 
 use serde_json::{Map, Value};
 
-/// What is wrong with a value, with places as JSON pointers; empty where it is valid.
+/// Returns the errors of a value, with places as JSON pointers; empty if it is valid.
 ///
-/// A keyword that is not known here fails the test: nothing is taken for valid unread.
+/// An unknown keyword fails the test, so that no part of a schema is ignored.
 pub(crate) fn errors(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, schema, value, "", &mut found);

@@ -1,4 +1,5 @@
-//! Handing shares to Slurm, with stand-ins for its programs; `slurm::` goes through a real one.
+//! Tests of submitting shares to Slurm, with stand-ins for its programs; the tests in `slurm::` use a real
+//! one.
 
 use crate::support::root;
 use crate::sweep::{code, said, scratch, states};
@@ -7,7 +8,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// Hands a sweep of five runs to Slurm in three shares, with these folders to look for programs in.
+/// Submits a sweep of five runs to Slurm in three shares, with the given search path for programs.
 fn launch(out: &str, path: &str, options: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_trainer"))
         .args(["sweep", "configs/ols.toml", "seed=0..4", "--out", out, "--launcher", "slurm"])
@@ -18,7 +19,7 @@ fn launch(out: &str, path: &str, options: &[&str]) -> Output {
         .unwrap()
 }
 
-/// A folder for stand-ins of Slurm's programs, to be looked for there alone.
+/// Folder for stand-ins of Slurm's programs, used as the only search path.
 #[cfg(unix)]
 struct Tools(TempDir);
 
@@ -36,7 +37,7 @@ impl Tools {
     }
 }
 
-/// Submits nothing and runs the tasks of an array at once; a job's number is that of its first share.
+/// Stand-in for `sbatch` that runs the tasks of an array at once; a job's number is that of its first share.
 #[cfg(unix)]
 const SBATCH: &str = "for word; do script=$offset; offset=$word; case $word in --array=1-*) tasks=${word#--array=1-};; esac; done\n\
                       tasks=${tasks%%%*}; task=1\n\
@@ -44,7 +45,7 @@ const SBATCH: &str = "for word; do script=$offset; offset=$word; case $word in -
                       SLURM_ARRAY_TASK_ID=$task /bin/sh \"$script\" \"$offset\" >/dev/null 2>&1 || exit 1; task=$((task + 1)); done\n\
                       echo \"$((offset + 1));cluster\"\n";
 
-/// A machine without Slurm, one whose `sbatch` refuses, and one whose `sbatch` runs the tasks at once.
+/// Tests a machine without Slurm, one whose `sbatch` refuses, and one whose `sbatch` runs the tasks at once.
 #[cfg(unix)]
 #[test]
 fn a_slurm_array_has_one_task_for_each_share() {
@@ -57,7 +58,7 @@ fn a_slurm_array_has_one_task_for_each_share() {
     let script = Path::new(&out).join("slurm.sh");
     assert!(script.is_file() && states(&out) == ["pending"; 5]);
 
-    // What was refused is not advised again.
+    // An option that was refused is not advised again.
     tools.set("sbatch", "echo 'invalid partition' >&2\nexit 1\n");
     let refused = launch(&out, tools.path(), &["--resume"]);
     assert_eq!(code(&refused), 2);
@@ -104,7 +105,7 @@ fn more_shares_than_an_array_may_have_are_several_arrays() {
         assert_eq!(code(&output), 0, "{}", said(&output));
         serde_json::from_slice::<Value>(&output.stdout).unwrap()
     };
-    // Written only: nothing is asked for, and there is no number yet.
+    // With `--write-only` nothing is submitted, and there is no job number yet.
     let written = launch(&[&options[..], &["--write-only"]].concat());
     assert_eq!((&written["submitted"], &written["arrays"][2]["job"]), (&false.into(), &Value::Null));
     assert_eq!(states(&out), ["pending"; 5]);

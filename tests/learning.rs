@@ -1,14 +1,15 @@
-//! `task = "learn"` and `trainer predict`: dynamics learned from records, judged on records never seen.
+//! Tests of `task = "learn"` and `trainer predict`: dynamics learned from records and scored on unseen
+//! records.
 
 use crate::support::{measured, number, result, root, trainer};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// One sparse learner beside the quick baselines.
+/// One sparse learner with the quick baselines.
 const QUICK: [&str; 3] = ["configs/learn/sindy.toml", "sindy.members=10", "sindy.refit_samples=2000"];
 
-/// All baselines but the one that runs a diagnosis.
+/// All baselines except the one that needs a diagnosis.
 const QUICK_BASELINES: &str = "learn.baselines=persistence,nominal,recalibrated,arx";
 
 fn row<'a>(result: &'a Value, id: &str) -> &'a Value {
@@ -29,7 +30,8 @@ fn a_study_leaves_scores_models_tables_and_a_page() {
     let sindy = row(&result, "sindy");
     assert_eq!(sindy["kind"], "learner");
     assert_eq!(row(&result, "exact")["kind"], "reference");
-    // The simulator behind it names its coefficients in its own words; a law alone is beside the true terms.
+    // The reference `exact` names its coefficients in the simulator's own terms; only a law is compared with
+    // the true terms.
     assert!(row(&result, "exact")["coefficients"].get("sign(theta_dot)").is_none(), "{result}");
     let friction = &sindy["coefficients"]["sign(theta_dot)"];
     assert!(
@@ -52,7 +54,7 @@ fn a_study_leaves_scores_models_tables_and_a_page() {
     predicts_a_record(&model);
 }
 
-/// The model of friction and gravity on a record of that system drawn with another seed.
+/// Applies the model of friction and gravity to a record of that system drawn with another seed.
 fn predicts_a_record(model: &Path) {
     let (code, _, records) =
         result(&["simulate", "configs/learn/systems/friction-gravity.toml", "seed=77", "simulate.records=1"]);
@@ -69,7 +71,8 @@ fn predicts_a_record(model: &Path) {
     ];
     let output = trainer(&arguments);
     let said: Value = serde_json::from_slice(&output.stdout).unwrap();
-    // Another system of the same priors: its numbers are the same, its starts are not.
+    // The record is from another system with the same priors: its coefficients are the same, its initial
+    // states are not.
     assert!(number(&said, "/over_noise") < 2.0, "{said}");
     assert!(out.join("predictions.csv").is_file());
     let refused = trainer(&["predict", record.to_str().unwrap(), record.to_str().unwrap()]);
@@ -78,7 +81,7 @@ fn predicts_a_record(model: &Path) {
     assert!(message.contains("expected a model that `task = \"learn\"` wrote"), "{message}");
 }
 
-/// A short training is enough: what the network adds to the linear prediction shows after two epochs.
+/// A short training is enough: after two epochs the network improves on the linear prediction.
 #[test]
 fn a_sequence_model_beats_the_autoregression_and_predicts_a_record() {
     let quick =
@@ -100,7 +103,8 @@ fn a_sequence_model_beats_the_autoregression_and_predicts_a_record() {
     assert!(number(&said, "/free_run_rmse") < error("arx"), "{said}");
 }
 
-/// Devices compute in single precision at least: a training in it is that in doubles, but for its rounding.
+/// Every device computes at least in single precision: a training in it equals that in doubles up to
+/// rounding.
 #[test]
 fn single_precision_learns_what_doubles_do_and_a_device_that_is_not_there_is_refused() {
     let config = "configs/learn/temporal-convolution.toml";
@@ -230,7 +234,8 @@ fn missing_cells_of_a_record_are_told() {
     assert!(std::fs::read_to_string(run.path().join("report.html")).unwrap().contains(told));
 }
 
-/// A spring that the disc's nominal simulator has, dry friction that it lacks (KNOWN.md), in a law stated by the user.
+/// The disc's nominal simulator has a spring and lacks dry friction (KNOWN.md); the law is stated by the
+/// user.
 #[test]
 fn dry_friction_of_a_measured_disc_is_learned_from_one_release_and_helps_on_another() {
     if measured("disc-oscillator/free-a.csv").is_none() {

@@ -1,4 +1,4 @@
-//! `trainer list runs` and `trainer compare`: many runs, one of them broken.
+//! Tests of `trainer list runs` and `trainer compare`: many runs, one of them broken.
 
 use crate::support::trainer;
 use serde_json::Value;
@@ -23,7 +23,7 @@ fn text(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// Three runs, one whose result was cut short, one that never had one, and an empty folder.
+/// Creates three runs, one with a truncated result, one without a result, and an empty folder.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     run(&folder.path().join("first"), &["configs/lstm.toml", "seed=3"]);
@@ -59,7 +59,7 @@ fn one_broken_run_is_one_red_row_in_list_and_table() {
         let (state, reason) = state(name);
         assert!(state == "corrupt" && reason.contains(says), "{name}: {state}, {reason}");
     }
-    // Newest first.
+    // The newest run comes first.
     let times: Vec<&str> = rows.iter().map(|row| row["began"].as_str().unwrap()).collect();
     assert!(times.windows(2).all(|pair| pair[0] >= pair[1]), "{times:?}");
     let shown = text(&trainer(&["list", "runs", root]));
@@ -75,7 +75,7 @@ fn one_broken_run_is_one_red_row_in_list_and_table() {
         columns.contains(&"seed".into()) && columns.contains(&"fit.tolerance_percent".into()),
         "{columns:?}"
     );
-    // What only another estimator has is no column.
+    // Keys that only another estimator has are not columns.
     assert!(columns.iter().all(|key| !key.as_str().unwrap().starts_with("estimator.")), "{columns:?}");
 }
 
@@ -125,14 +125,14 @@ fn sweeps_and_comparisons_of_methods_go_into_the_same_table() {
         table["rows"].as_array().unwrap().iter().map(|row| row["estimator"].as_str().unwrap()).collect();
     assert_eq!(estimators, ["ols", "ols", "qr", "svd"]);
     assert_eq!(table["done"], 3);
-    // The result of a run of the sweep is lost.
+    // The result of one run of the sweep is removed.
     let lost = std::fs::read_dir(sweep.join("runs")).unwrap().next().unwrap().unwrap().path();
     std::fs::remove_file(lost.join("result.json")).unwrap();
     let table = json(&trainer(&["compare", paths[0], "--json"]));
     let states: Vec<&str> =
         table["rows"].as_array().unwrap().iter().map(|row| row["state"].as_str().unwrap()).collect();
     assert!(states.contains(&"corrupt") && states.contains(&"done"), "{states:?}");
-    // A listing has the sweep as one entry, and lists its runs where it is named.
+    // A listing shows the sweep as one entry, and lists its runs if the sweep is named.
     let listed = json(&trainer(&["list", "runs", folder.path().to_str().unwrap(), "--json"]));
     let rows = listed["runs"].as_array().unwrap();
     let row = rows.iter().find(|row| row["name"] == "sweep").unwrap();
@@ -157,7 +157,7 @@ fn what_is_not_there_is_named() {
     }
 }
 
-/// A thousand runs, one of them cut short: 999 rows and a red one. How long that takes is said:
+/// Lists a thousand runs, one of them truncated: 999 rows and a red one. The test prints the time that takes:
 ///
 /// `cargo test --release -p trainer --test acceptance thousand -- --ignored`
 #[test]

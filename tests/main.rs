@@ -1,7 +1,7 @@
-//! Acceptance: what a user, a script or a published problem can hold the program to.
+//! Acceptance tests: what a user, a script or a published problem can expect of the program.
 //!
-//! One binary, because each one links all of burn. It belongs to the trainer's package, which is how
-//! cargo hands it the program to run.
+//! All tests are in one binary, because each binary links all of burn. It belongs to the trainer's package,
+//! so that cargo passes it the path of the program.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! Measured records, read where they lie; skipped, loudly, where they do not.
+//! Tests on measured records in their folder beside the project; skipped with a notice if they are absent.
 
 use crate::support::{measured, number, result, root, trainer};
 use record::{Clock, ClockChoice, ClockKind, CsvColumns, Format, ReadOptions, Unit, read_file};
@@ -42,7 +42,7 @@ fn the_believed_clock_of_the_papers_record_is_near_260_hertz() {
     let findings = result["data"]["findings"].to_string();
     assert!(findings.contains("not the stated 500 Hz"), "{findings}");
     assert!(findings.contains("7625 samples, not the stated 14650"), "{findings}");
-    // A 12-bit encoder, through two decimals of a degree.
+    // A 12-bit encoder, rounded to two decimals of a degree.
     close(number(&result, "/data/resolution"), std::f64::consts::TAU / 4096.0, 3);
 }
 
@@ -64,8 +64,8 @@ fn every_measured_record_is_read_and_its_clock_decided() {
         ..CsvColumns::default()
     };
     use ClockKind::{Host, UniformIndex};
-    // File, how to read it, samples, rate in Hz, clock. The servo's stamps jitter, and its values are too
-    // coarse to tell whose jitter it is: the stamps stand.
+    // File, read options, samples, rate in Hz, clock. The servo's stamps jitter, and its values are too
+    // coarse to tell the source of the jitter: the stamps are used.
     let records: [(&str, ReadOptions, usize, f64, ClockKind); 8] = [
         ("horizontal-pendulum/80P.txt", host_log(), 7_625, 259.6, UniformIndex),
         ("horizontal-pendulum/60.txt", host_log(), 6_560, 259.5, UniformIndex),

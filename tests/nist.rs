@@ -1,12 +1,12 @@
-//! The linear problems of NIST's Statistical Reference Datasets that are formulas.
+//! Tests of the linear problems of NIST's Statistical Reference Datasets that are given by formulas.
 //!
 //! Definitions and certified values: NIST StRD, Linear Regression (NoInt1, NoInt2: Eberhardt, K., NIST;
 //! Wampler1 to Wampler5: Wampler, R. H., J. Amer. Statist. Assoc. 65 (1970) 549).
 
 use oracle::{Intercept, LinearFit, least_squares};
 
-/// Correct significant digits: −log10 of the relative error, of the absolute one where the certified
-/// value is 0; capped at the certified 15.
+/// Returns the number of correct significant digits: −log10 of the relative error, or of the absolute error
+/// if the certified value is 0; at most the certified 15.
 fn digits(found: f64, certified: f64) -> f64 {
     let error = (found - certified).abs() / if certified == 0.0 { 1.0 } else { certified.abs() };
     if error == 0.0 { 15.0 } else { (-error.log10()).min(15.0) }
@@ -37,13 +37,13 @@ fn no_int_2() {
     assert!(digits(fit.r_squared, 0.993_348_115_299_335) >= 14.0);
 }
 
-/// The scatter of Wampler3; Wampler4 and 5 have 100 and 10,000 times as much.
+/// Scatter of Wampler3; Wampler4 and 5 have 100 and 10,000 times as much.
 const SCATTER: [f64; 21] = [
     759.0, -2048.0, 2048.0, -2048.0, 2523.0, -2048.0, 2048.0, -2048.0, 1838.0, -2048.0, 2048.0, -2048.0,
     1838.0, -2048.0, 2048.0, -2048.0, 2523.0, -2048.0, 2048.0, -2048.0, 759.0,
 ];
 
-/// A polynomial of the fifth degree in x = 0, 1, …, 20 with coefficients 1, r, r², … plus scatter.
+/// Fits a polynomial of the fifth degree in x = 0, 1, …, 20 with coefficients 1, r, r², … plus scatter.
 fn wampler(ratio: f64, scatter: f64) -> LinearFit {
     let powers: Vec<Vec<f64>> =
         (0..=5).map(|power| (0..=20).map(|x| f64::from(x).powi(power)).collect()).collect();

@@ -1,10 +1,10 @@
-//! Nominal simulators with effects, and numbers that a record does not determine: what the whole program makes of them.
+//! Tests of nominal simulators with effects, and of coefficients that a record does not determine.
 
 use crate::support::{measured, result, simulated, trainer};
 use serde_json::Value;
 use std::path::Path;
 
-/// A decay with drag, and an encoder of 4096 steps a turn.
+/// Configuration of a decay with drag, and an encoder of 4096 steps per turn.
 const CONFIG: &str = r#"
 name = "drag"
 [record]
@@ -36,7 +36,7 @@ fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
     assert_eq!(first["verdict"]["effects"], serde_json::json!(["quadratic_drag", "sensor_quantization"]));
     let repaired = folder.path().join("repaired.toml");
     let stated = text(folder.path(), "repaired.toml");
-    // The digits that the errors leave, and two more.
+    // The stated digits: those that the error leaves, and two more.
     assert!(stated.contains("parameters.step = 0.00153398 "), "{stated}");
     let values = stated.lines().filter_map(|line| line.split_once('=')?.1.split('#').next());
     let numbers: Vec<&str> = values.map(str::trim).filter(|value| value.parse::<f64>().is_ok()).collect();
@@ -50,7 +50,7 @@ fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
     assert_eq!(coefficient["determined"], true);
     assert_eq!(coefficient["unit"], "1/rad");
     assert!((coefficient["repaired"]["value"].as_f64().unwrap() / 0.03 - 1.0).abs() < 0.05, "{known}");
-    // The folder holds the simulator that was asked about, and its copy is the same question.
+    // The folder has the nominal simulator of the diagnosis, and its copy gives the same diagnosis.
     let kept = text(second.path(), "nominal.toml");
     assert!(kept.contains("id = \"quadratic_drag\"\nrecalibrate = true\n"), "{kept}");
     let nominal = second.path().join("nominal.toml");
@@ -60,7 +60,7 @@ fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
     assert!(text(second.path(), "repaired.toml").contains("id = \"quadratic_drag\""));
 }
 
-/// A carriage without a spring, whose owner believes in one.
+/// A carriage without a spring, whose nominal simulator has one.
 #[test]
 fn a_spring_where_there_is_none_is_not_determined() {
     let Some(record) = measured("positioning-drive/record.csv") else { return };
@@ -69,7 +69,7 @@ fn a_spring_where_there_is_none_is_not_determined() {
     let sprung = std::fs::read_to_string(crate::support::root().join(nominal)).unwrap();
     let sprung = sprung.replace("stiffness = 0.0", "stiffness = 0.5");
     let sprung = sprung.replace("rest_angle = 0.0", "rest_angle = 0.125");
-    // A quarter of it tells as much, in a quarter of the time.
+    // A quarter of the record is as informative, in a quarter of the time.
     let record = std::fs::read_to_string(crate::support::root().join(record)).unwrap();
     let quarter: Vec<&str> = record.lines().take(record.lines().count() / 4).collect();
     let log = scratch.path().join("record.csv");
@@ -86,7 +86,7 @@ fn a_spring_where_there_is_none_is_not_determined() {
     assert!(row["repaired"]["value"].is_number(), "{row}");
     assert_eq!(found["calibration"]["damping"]["determined"], true);
     assert_eq!(found["calibration"]["stiffness"]["determined"], false);
-    // A stiffness that is next to nothing stays as it was believed; the rest angle beside it is what preloads the drive.
+    // A negligible stiffness keeps its nominal value; the rest angle beside it preloads the drive.
     let said = "a number for stiffness that these data determine; the one here is the nominal simulator's";
     for (name, number) in [
         ("repaired.toml", "stiffness = 0.5 "),

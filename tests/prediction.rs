@@ -1,9 +1,9 @@
-//! `task = "predict"`: methods scored on peaks that they did not see.
+//! Tests of `task = "predict"`: methods scored on unseen peaks.
 
 use crate::support::{measured, number, result, trainer};
 use serde_json::Value;
 
-/// Two fast methods, few draws.
+/// Two fast methods with few draws.
 const QUICK: [&str; 4] = [
     "configs/beyond.toml",
     "predict.methods=ols,sindy,baseline",
@@ -42,13 +42,13 @@ fn a_study_leaves_its_tables_and_tells_simulated_from_measured() {
     for row in result["problems"].as_array().unwrap() {
         assert_eq!(row["origin"], "simulated", "{row}");
         let study = &row["outcome"]["studied"];
-        // What is known of the truth is said of simulations from a law, not of a record.
+        // Scores against the truth exist for simulations from a law, but not for a record.
         assert_eq!(study["law"].is_null(), row["id"] == "shipped-record");
         assert_eq!(
             study["exponential"]["extrapolation"]["truth_rms_log_error"].is_null(),
             study["law"].is_null()
         );
-        // A straight line is not the law of dry friction, and is that of the control.
+        // A straight line is not the law of dry friction, but it is the law of the control.
         let error = number(study, "/exponential/extrapolation/rms_log_error");
         if row["id"] == "control" {
             assert!(error < 0.06, "{error}");
@@ -75,7 +75,7 @@ fn threads_do_not_change_a_bit() {
     assert_eq!(run("1"), run("3"));
 }
 
-/// A result without its wall times.
+/// Removes the wall times from a result.
 fn timeless(mut result: Value) -> Value {
     match &mut result {
         Value::Object(fields) => {
@@ -94,7 +94,7 @@ fn timeless(mut result: Value) -> Value {
     result
 }
 
-/// The draws do not depend on which problems and methods are asked for, nor on how many draws.
+/// The draws depend neither on the selected problems and methods nor on the number of draws.
 #[test]
 fn a_draw_is_its_own() {
     let draws = |more: &[&str]| {
@@ -109,8 +109,8 @@ fn a_draw_is_its_own() {
     assert_eq!(alone, draws(&["predict.problems=dry-friction,control"]));
 }
 
-/// Fits with the stated interval of λ: of an exponential with the same scatter of ln A everywhere it holds
-/// the slope 95 times in a hundred, and of an envelope that bends it means another slope in each method.
+/// Coverage by the stated interval of λ. On an exponential with the same scatter of ln A everywhere it holds
+/// the slope 95 times in a hundred; on a bent envelope the slope has another meaning for each method.
 #[test]
 fn coverage_is_stated_for_what_it_is() {
     let (_, result, _) = result(&with(&[
@@ -162,7 +162,7 @@ fn measured_records_are_scored_without_a_test_of_their_one_ending() {
         let ending = "which no test can tell from chance";
         assert!(verdict.contains(ending) || verdict.contains("no method predicts"), "{verdict}");
         assert!(scores["extrapolation"]["against_exponential"].is_null());
-        // The best exponential misses the end of both by more than half of the amplitude.
+        // The best exponential has an error of more than half of the amplitude at the end of both.
         let error = "/outcome/studied/exponential/extrapolation/rms_log_error";
         assert!(number(row, error) > 0.5, "{id}");
     }

@@ -1,16 +1,16 @@
-//! One swing in the files of other programs: the same answer, whatever it was written in.
+//! Tests of reading one swing from the files of several programs: the answer is the same for each format.
 
 use crate::support::{number, root, trainer};
 use serde_json::Value;
 use std::path::Path;
 
-/// Samples of the swing.
+/// Number of samples of the swing.
 pub(crate) const SAMPLES: usize = 1000;
 
-/// Time in seconds and angle in radians of a sample: 22 rad/s, a damping of 0.3 per unit of inertia.
+/// Returns time in seconds and angle in radians of a sample: 22 rad/s, a damping of 0.3 per unit of inertia.
 pub(crate) fn swing(index: usize) -> (f64, f64) {
     let time = index as f64 / 100.0;
-    // Noise without a generator, so that the files hold a record and no formula.
+    // Noise without a generator, so that the values do not follow a smooth formula.
     let noise = (index as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5;
     (time, 0.7 * (-0.15 * time).exp() * (22.0 * time).cos() + 1e-3 * noise)
 }
@@ -26,7 +26,8 @@ fn comma(number: f64) -> String {
     format!("{number:.7}").replace('.', ",")
 }
 
-/// Name of the way of writing, the text, the nominal's coordinate, and the options that it takes.
+/// Returns for each format its name, the text, the coordinate of the nominal simulator, and the options that
+/// it needs.
 pub(crate) fn files() -> Vec<(&'static str, String, &'static str, &'static [&'static str])> {
     let deg = f64::to_degrees;
     let iso = |i: usize| format!("2024-05-01T12:00:{:02}.{:03}Z", i / 100, i % 100 * 10);

@@ -1,4 +1,5 @@
-//! A run that was killed, stopped or started twice: nothing is lost, and resumed it ends as if nothing had happened.
+//! Tests of runs that are killed, stopped or started twice: nothing is lost, and a resumed run ends as an
+//! uninterrupted one.
 
 #![cfg(unix)]
 
@@ -31,7 +32,7 @@ fn wait_for(child: &mut Child, path: &Path) {
     }
 }
 
-/// Waits until so many events of a run are written, each line to its end: the log is there before its first line is.
+/// Waits until a number of events of a run are written completely. The log exists before its first line does.
 fn wait_for_events(child: &mut Child, out: &Path, events: usize) {
     let written =
         || std::fs::read_to_string(out.join("events.jsonl")).map_or(0, |log| log.matches('\n').count());
@@ -71,11 +72,11 @@ const PREDICTION: &[&str] = &[
     "checkpoint.interval_s=0.02",
 ];
 
-/// One learner of dynamics beside the baselines; nothing of it is kept before its end.
+/// One learner of dynamics with the baselines; it stores nothing before its end.
 const LEARNING: &[&str] = &["configs/learn/sindy.toml", "sindy.members=4", "sindy.refit_samples=500"];
 
-/// Kills a run at random moments and resumes it, until it ends by itself; then everything in its folder equals that of
-/// a run in one go.
+/// Kills a run at random moments and resumes it until it ends by itself; then everything in its folder equals
+/// that of an uninterrupted run.
 fn killed_and_resumed(rounds: usize, seed: &Seed) {
     let scratch = tempfile::tempdir().unwrap();
     let mut generator = seed.generator();
@@ -91,7 +92,7 @@ fn killed_and_resumed(rounds: usize, seed: &Seed) {
             let mut kills = 0;
             loop {
                 let mut child = start(&[arguments, &["--resume"]].concat(), &out);
-                // From before the folder is there until after the end.
+                // The moments range from before the folder exists until after the end.
                 std::thread::sleep(moment(took, &mut generator));
                 child.kill().unwrap();
                 match child.wait().unwrap().code() {
@@ -109,7 +110,7 @@ fn killed_and_resumed(rounds: usize, seed: &Seed) {
                 }
             }
             if out.join("checkpoints").exists() {
-                // Killed after its last event, before it tidied up.
+                // The run was killed after its last event, before it cleaned up.
                 let code = start(&[arguments, &["--resume"]].concat(), &out).wait().unwrap().code();
                 assert_eq!(code, Some(0));
             }
@@ -158,7 +159,7 @@ fn a_folder_is_one_programs_at_a_time() {
         assert!(message.contains(&format!("process {} on ", first.id())), "{message}");
         assert!(message.contains(" since 2"), "{message}");
     }
-    // Killed, it leaves no lock behind.
+    // A killed run leaves no lock behind.
     first.kill().unwrap();
     first.wait().unwrap();
     let mut third = start(&[LONG, &["--resume"]].concat(), &out);
@@ -170,7 +171,7 @@ fn a_folder_is_one_programs_at_a_time() {
 #[test]
 fn asked_to_stop_it_stops_within_a_second_and_can_be_resumed() {
     let scratch = tempfile::tempdir().unwrap();
-    // In the development profile, with everybody else at work, a second is short for the training's last step.
+    // In the development profile on a busy machine, the last training step may take longer than a second.
     let within = Duration::from_secs(if cfg!(debug_assertions) { 5 } else { 1 });
     let whole = scratch.path().join("whole");
     let code = start(TRAINING, &whole).wait().unwrap().code();
@@ -197,7 +198,7 @@ fn a_finished_run_is_left_as_it_is() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("run");
     let shown = out.to_str().unwrap();
-    // Resuming what was not begun begins it.
+    // Resuming a run that was never started starts it.
     let all = [SHORT, &["--out", shown, "--resume"]].concat();
     assert_eq!(trainer(&all).status.code(), Some(1));
     let files = || {
@@ -213,7 +214,7 @@ fn a_finished_run_is_left_as_it_is() {
     let before = files();
     let output = trainer(&all);
     let said = String::from_utf8(output.stdout).unwrap();
-    // Looked at again, a failed check has not passed.
+    // When a finished run is shown again, its failed check still counts.
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("this run is finished; nothing was changed"), "{said}");
     assert_eq!(files(), before);
@@ -236,7 +237,7 @@ fn an_edited_configuration_is_refused_with_the_keys_that_differ() {
     for words in ["seed was 0, now 1", "fit.max_steps was 3, now 4", "estimator.hidden was [", "now [9]"] {
         assert!(message.contains(words), "{words}: {message}");
     }
-    // What the message advises works: the run is as it was, its failed check included.
+    // The advice of the message works: the run is unchanged, including its failed check.
     let config = format!("{shown}/config.toml");
     assert_eq!(trainer(&[&config, "--out", shown, "--resume"]).status.code(), Some(1));
 }
@@ -273,7 +274,7 @@ fn resuming_needs_to_know_where_and_finds_a_run_there() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("there is no run in it"));
 }
 
-/// As long as a log's last line was being written the run was killed: it is said and left out.
+/// A run that was killed while it wrote a log line has a torn last line, which is reported and left out.
 #[test]
 fn a_torn_last_event_is_said() {
     let scratch = tempfile::tempdir().unwrap();
@@ -291,8 +292,8 @@ fn a_torn_last_event_is_said() {
     assert_eq!(timeless_files(&out), before);
 }
 
-/// A disk that takes no more than so many blocks a file, by the shell's own limit: the run ends with a message that
-/// names the file, and what was there before is whole.
+/// A disk limit per file, set by the shell: the run ends with a message that names the file, and the files
+/// from before are intact.
 #[test]
 fn a_limit_on_the_size_of_files_is_an_error_with_the_files_name() {
     let scratch = tempfile::tempdir().unwrap();

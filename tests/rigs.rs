@@ -1,10 +1,11 @@
-//! `trainer diagnose --rigs`: classes that rigs of one build share, and where their coefficients agree.
+//! Tests of `trainer diagnose --rigs`: classes that rigs of one build share, and the agreement of their
+//! coefficients.
 
 use crate::support::{number, simulated, trainer};
 use serde_json::Value;
 use std::path::Path;
 
-/// A rig with dry friction and a pendulum's weight, which the nominal simulator lacks.
+/// Rig with dry friction and the weight of a pendulum, which the nominal simulator lacks.
 const RIG: &str = r#"
 name = "rig"
 [record]
@@ -23,7 +24,7 @@ parameters.torque = 40.0
 parameters.angle = 1.0
 "#;
 
-/// Folders of rigs `A`, `B`, … whose weights exert these torques.
+/// Creates folders of rigs `A`, `B`, … whose weights exert these torques.
 pub(crate) fn rigs(scratch: &Path, torques: &[f64]) -> Vec<String> {
     let rig = |(index, (name, torque)): (usize, (&&str, &f64))| {
         let folder = scratch.join(name);
@@ -68,13 +69,13 @@ fn equal_friction_agrees_and_unequal_weights_do_not() {
     for id in ["friction", "restoring"] {
         let own = class(&found, id);
         assert_eq!(own["present_in"].as_array().unwrap().len(), 3, "{own}");
-        // Three rigs say more than each of them.
+        // Three rigs together are more certain than each of them alone.
         let most =
             found["rigs"].as_array().unwrap().iter().flat_map(|rig| rig["classes"].as_array().unwrap());
         let most = most.filter(|class| class["id"] == id).map(|class| number(class, "/probability"));
         assert!(number(own, "/probability") > most.fold(0.0, f64::max), "{own}");
     }
-    // Whichever kind of dry friction is named, its torque is that of all three.
+    // For every named kind of dry friction, the torque is that of all three rigs.
     let friction = class(&found, "friction")["coefficients"].as_array().unwrap();
     assert!(friction.iter().all(|row| row["agree"] == true), "{friction:?}");
     let torque = friction.iter().find(|row| row["parameter"] == "torque").unwrap();
@@ -87,7 +88,7 @@ fn equal_friction_agrees_and_unequal_weights_do_not() {
     assert!(told.contains("in all three") && told.contains("the same within errors"), "{told}");
     assert!(told.contains("differ by"), "{told}");
 
-    // The folders hold what was printed, a page, and each rig's own run.
+    // The folder has the printed answer, a page, and each rig's own run.
     let written = std::fs::read_to_string(out.join("rigs.json")).unwrap();
     assert_eq!(serde_json::from_str::<Value>(&written).unwrap(), found);
     for file in ["A/diagnosis.json", "B/report.html", "C/repaired.toml"] {

@@ -1,4 +1,4 @@
-//! What a run leaves, and that it is the same every time.
+//! Tests of the files of a run, and of their reproducibility.
 
 use crate::support::{number, result, trainer};
 use serde_json::Value;
@@ -49,7 +49,7 @@ fn threads_do_not_change_a_bit() {
     assert_eq!(run("1"), run("2"));
 }
 
-/// A result without its wall times.
+/// Removes the wall times from a result.
 fn timeless(mut result: Value) -> Value {
     result["seconds"] = Value::Null;
     for row in result["seeds"].as_array_mut().unwrap() {
@@ -81,7 +81,7 @@ fn untrained_every_seed_misses_and_the_exit_code_says_so() {
     }
 }
 
-/// A fit that takes minutes is asked to stop once it has begun.
+/// A fit that takes minutes is asked to stop after it has started.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_keeps_its_best_and_exits_with_130() {
@@ -109,7 +109,7 @@ fn an_interrupted_run_keeps_its_best_and_exits_with_130() {
     assert!(out.join("report.html").is_file());
 }
 
-/// Of a comparison that is asked to stop during its first fit the other methods have not failed.
+/// If a comparison is asked to stop during its first fit, the other methods do not count as failed.
 #[cfg(unix)]
 #[test]
 fn methods_that_were_not_begun_are_no_failures() {
@@ -193,7 +193,7 @@ fn estimators_are_listed() {
     assert!(["baseline", "pinn", "ols"].iter().all(|id| ids.contains(id)), "{ids:?}");
 }
 
-/// What a comparison says of a classical method, its own configuration says too.
+/// The configuration of a classical method gives the same result as a comparison.
 #[test]
 fn a_classical_method_runs_from_its_own_configuration() {
     let (code, single, folder) = result(&["configs/differential-evolution.toml", "fit.seeds=2"]);
@@ -206,8 +206,8 @@ fn a_classical_method_runs_from_its_own_configuration() {
     assert_eq!(row["worst_error_percent"], single["worst_error_percent"]);
 }
 
-/// Both half-cycles, believed clock: the recommended pipeline finds the simulated oscillator's own
-/// frequency, which the paper's misses by the host's bursts.
+/// With both half-cycles and the believed clock, the recommended pipeline finds the simulated oscillator's
+/// own frequency; the paper's pipeline misses it because of the host's bursts.
 #[test]
 fn the_recommended_pipeline_finds_the_simulated_frequency() {
     let (_, result, _) =

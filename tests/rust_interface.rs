@@ -1,4 +1,4 @@
-//! The Rust interface gives what the command line gives.
+//! Tests that the Rust interface gives the same results as the command line.
 
 use crate::support::{result, root, trainer};
 use ringdown_lab::{
@@ -10,7 +10,7 @@ fn shipped(name: &str) -> String {
     root().join("experiments/default-record").join(name).display().to_string()
 }
 
-/// Takes durations away, which differ from run to run.
+/// Removes durations, which differ from run to run.
 fn timeless(mut value: Value) -> Value {
     fn forget(value: &mut Value) {
         match value {
@@ -37,7 +37,7 @@ fn a_diagnosis_is_that_of_the_command_line() {
     let found = diagnose(&[record], &nominal, &DiagnosisOptions::default()).unwrap();
     let own: Value = serde_json::from_str(&found.to_json().unwrap()).unwrap();
     assert_eq!(timeless(own), timeless(told));
-    // So are the files beside it.
+    // The other files of the folder are the same too.
     for (name, text) in found.files() {
         assert_eq!(std::fs::read_to_string(folder.path().join(name)).unwrap(), text, "{name}");
     }
@@ -45,7 +45,7 @@ fn a_diagnosis_is_that_of_the_command_line() {
     let page = folder.path().join("again.html");
     found.report(&page).unwrap();
     assert!(std::fs::read_to_string(page).unwrap().contains(&found.verdict().summary));
-    // And the repaired simulator is a nominal one that has what closes the gap.
+    // The repaired simulator is a nominal simulator with the effects that close the gap.
     let repaired = found.repaired_nominal().unwrap().to_toml();
     let closing: Vec<_> = found.effects().iter().filter(|effect| effect.gap_share.is_some()).collect();
     assert!(!closing.is_empty());
@@ -104,7 +104,7 @@ fn errors_say_what_the_command_line_says() {
     assert!(matches!(error, Error::Config(_)));
     assert!(told(&shipped("record.csv"), &nominal).contains(&error.to_string()), "{error}");
 
-    // What does not move says nothing of any system.
+    // A record without motion gives no information about any system.
     let times: Vec<f64> = (0..500).map(|i| f64::from(i) / 100.0).collect();
     let still = Record::new(times, vec![0.1; 500], Arrays::default()).unwrap();
     let nominal = Nominal::swinging(2.0, 0.01).unwrap();

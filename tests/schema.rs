@@ -1,4 +1,4 @@
-//! `trainer schema`: what editors check configurations against agrees with what the program takes.
+//! Tests that `trainer schema`, used by editors to check configurations, agrees with the program.
 
 use crate::json_schema::errors;
 use crate::support::{root, trainer};
@@ -45,7 +45,8 @@ fn every_shipped_configuration_is_valid_and_a_slip_in_any_key_is_not() {
     }
 }
 
-/// The way to every key of a value; tables that the configuration names itself have no wrong name.
+/// Returns the path to every key of a value, except for tables that the configuration names itself, which
+/// have no wrong name.
 fn keys(value: &Value) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let children: Vec<(String, &Value)> = match value {
@@ -137,7 +138,7 @@ fn the_nominal_simulator_of_a_diagnosis_has_a_schema() {
     assert!(!valid(&format!("period = 2\ndamping = 0.1\n{}", effect.replace("torque", "torqe"))));
 }
 
-/// Each default of the schema is what the program takes where a file is silent.
+/// Each default of the schema is the value that the program uses if a file does not set the key.
 #[test]
 fn defaults_of_the_schema_are_those_in_force() {
     let output = trainer(&["schema", "estimate"]);

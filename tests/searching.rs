@@ -1,11 +1,12 @@
-//! `trainer sweep --search`: points instead of every combination, the best named, the same bits however it is run.
+//! Tests of `trainer sweep --search`: selected points instead of all combinations, the best one named, and
+//! the same bits for any way of running it.
 
 use crate::support::trainer;
 use crate::sweep::{code, json, results, said, scratch, start, states, sweep, wait_for};
 use serde_json::Value;
 use std::path::Path;
 
-/// A study of one learner on six short simulated records, below a scratch folder.
+/// Creates a study of one learner on six short simulated records, below a scratch folder.
 fn study(folder: &Path, learner: &str, section: &str) -> String {
     let system = crate::support::root().join("configs/learn/systems/friction-gravity.toml");
     let system = std::fs::read_to_string(system).unwrap();
@@ -20,14 +21,14 @@ fn study(folder: &Path, learner: &str, section: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// A quick fit, whose range stands in the file.
+/// Quick fit, with its search range in the file.
 const SINDY: &str = "refit = false\nmembers = 0\nthreshold = { from = 1e-3, to = 0.5, scale = \"log\" }";
 
 fn search_of(out: &str) -> Value {
     json(&Path::new(out).join("result.json"))["search"].clone()
 }
 
-/// Validation errors of the runs over the noise, in the order of their numbers.
+/// Returns the validation errors of the runs relative to the noise, in the order of their numbers.
 fn errors(out: &str) -> Vec<f64> {
     let lines = json(&Path::new(out).join("sweep.json"))["runs"].as_array().unwrap().clone();
     let of = |line: &Value| {
@@ -58,7 +59,7 @@ fn a_random_search_names_the_best_and_writes_its_configuration() {
     let page = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
     assert!(page.contains("Searched") && page.contains("best.toml"));
 
-    // Two shares give the same points and results, and the best configuration runs and is as good.
+    // Two shares give the same points and results, and the best configuration runs with the same result.
     let (_two, two) = scratch();
     for share in ["1/2", "2/2"] {
         assert_eq!(code(&sweep(&asked, &two, &["--shard", share, "--quiet"])), 0);
@@ -73,7 +74,7 @@ fn a_random_search_names_the_best_and_writes_its_configuration() {
     assert_eq!(row["validation"]["over_noise"].as_f64(), Some(least));
 }
 
-/// What is proposed follows from the seed and the results: not from the threads, and not from having been killed.
+/// Proposals depend on the seed and the results only: not on the threads, and not on an interruption.
 #[cfg(unix)]
 #[test]
 fn a_search_that_was_killed_proposes_what_it_would_have() {
@@ -88,7 +89,7 @@ fn a_search_that_was_killed_proposes_what_it_would_have() {
     wait_for(&mut child, &two, 11);
     child.kill().unwrap();
     child.wait().unwrap();
-    // From the folder alone.
+    // The search is resumed from the folder alone.
     let output = sweep(&["sweep"], &two, &["--resume", "--threads", "1", "--quiet"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     assert_eq!(results(&one), results(&two));
@@ -98,7 +99,7 @@ fn a_search_that_was_killed_proposes_what_it_would_have() {
     assert!(code(&other) == 2 && said(&other).contains("15 trials in batches of 2"), "{}", said(&other));
 }
 
-/// The trial that went through all rungs was stopped twice and went on to the bit.
+/// The trial that passed all rungs was stopped twice and resumed to the same bits.
 #[test]
 fn halving_stops_the_worse_and_the_best_is_what_it_would_have_been() {
     let (folder, out) = scratch();
@@ -130,7 +131,7 @@ fn halving_stops_the_worse_and_the_best_is_what_it_would_have_been() {
         (&rungs[0]["steps"], &rungs[1]["steps"], &rungs[2]["steps"]),
         (&1.into(), &2.into(), &Value::Null)
     );
-    // Each rung keeps the better half of the one before.
+    // Each rung keeps the better half of the previous one.
     let values = |rung: &Value| -> Vec<(u64, f64)> {
         let of = |own: &Value| (own["number"].as_u64().unwrap(), own["value"].as_f64().unwrap());
         rung["values"].as_array().unwrap().iter().map(of).collect()
@@ -140,14 +141,14 @@ fn halving_stops_the_worse_and_the_best_is_what_it_would_have_been() {
     let worst_kept = worst_kept.map(|own| own.1).fold(0.0, f64::max);
     let left = first.iter().filter(|(number, _)| second.iter().all(|own| own.0 != *number));
     assert!(left.map(|own| own.1).fold(f64::INFINITY, f64::min) >= worst_kept, "{first:?} {second:?}");
-    // In one go, the best trial gives the same bits.
+    // The best trial gives the same bits without interruption.
     let alone = folder.path().join("alone");
     let run = trainer(&[&format!("{out}/best.toml"), "--quiet", "--out", alone.to_str().unwrap()]);
     assert_eq!(code(&run), 0, "{}", said(&run));
     let best = Path::new(&out).join(search_of(&out)["best"]["run"].as_str().unwrap());
     let model = "model/friction-gravity/lstm.safetensors";
     assert_eq!(std::fs::read(alone.join(model)).unwrap(), std::fs::read(best.join(model)).unwrap());
-    // Going on finds nothing to do.
+    // Resuming finds nothing to do.
     let again = sweep(&asked, &out, &["--resume", "--quiet"]);
     assert_eq!((code(&again), states(&out).len()), (0, 4), "{}", said(&again));
 }

@@ -1,5 +1,5 @@
-//! Several programs on one folder: they share the work, whoever is killed leaves it to the others, and the page on a fleet
-//! is made of what is there.
+//! Tests of several processes on one folder: they share the work, the others take over from a killed process,
+//! and the page on a fleet is made from the available answers.
 
 use crate::diagnose::{decay, refusal, write};
 use crate::support::{NOMINAL, root, trainer};
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Two processes on one folder, neither of which knows of the other: they share the runs, and none is made twice.
+/// Two processes on one folder that do not know of each other share the runs, and none is made twice.
 #[test]
 fn a_second_process_beside_a_live_one_shares_its_runs() {
     let (_whole, whole) = scratch();
@@ -22,7 +22,7 @@ fn a_second_process_beside_a_live_one_shares_its_runs() {
     wait_for(&mut first, &out, 1);
     let second = sweep(SLOW, &out, &["--resume", "--threads", "1"]);
     assert_eq!(code(&second), 0, "{}", said(&second));
-    // It comes back once everything is there, whoever made it.
+    // It returns once all runs are finished, no matter which process made them.
     assert_eq!(states(&out), ["done"; 6]);
     assert!(first.wait().unwrap().success());
     assert_eq!(results(&out), results(&whole));
@@ -33,7 +33,8 @@ fn a_second_process_beside_a_live_one_shares_its_runs() {
     }
 }
 
-/// What a live process is at is waited for; once that process is killed, the one that waited makes it.
+/// A process waits for runs in progress elsewhere; if the other process is killed, it makes those runs
+/// itself.
 #[test]
 fn runs_of_a_killed_process_are_taken_over_by_one_that_waits() {
     let (_folder, out) = scratch();
@@ -70,7 +71,7 @@ fn runs_of_a_killed_process_are_taken_over_by_one_that_waits() {
     assert_eq!(logs, [["start", "resume", "end"], ["start", "resume", "end"]]);
 }
 
-/// Every task was killed before one could make the table: `trainer report` makes that of what there is.
+/// Every task was killed before one could make the table: `trainer report` makes it from the finished runs.
 #[test]
 fn a_report_on_a_killed_sweep_has_the_table_of_what_there_is() {
     let (_folder, out) = scratch();
@@ -96,7 +97,7 @@ fn a_task_has_done_its_work_whatever_its_runs_say() {
     assert_eq!(code(&sweep(&arguments, &out, &["--resume", "--quiet"])), 1, "it is outside of its tolerance");
 }
 
-/// A fleet of short records, with what the third says of itself.
+/// Creates a fleet of short records; the third case has labels of its robot and joint.
 fn fleet(cases: &Path, count: usize) {
     for number in 0..count {
         let name = |file: &str| format!("case-{number}/{file}");
@@ -106,7 +107,7 @@ fn fleet(cases: &Path, count: usize) {
     write(cases, "case-2/case.toml", "robot = \"r7\"\njoint = \"elbow\"\n");
 }
 
-/// Starts a batch; its result is what it prints.
+/// Starts a batch, which prints its result.
 fn batch(cases: &Path, answers: &Path, options: &[&str]) -> Child {
     let words =
         ["diagnose", "--batch", cases.to_str().unwrap(), "--out", answers.to_str().unwrap(), "--json"];
@@ -127,7 +128,8 @@ fn batch_result(child: Child) -> (Option<i32>, Value) {
     )
 }
 
-/// Two batches on one folder at the same time share its cases; shares are disjoint, and a repeated one finds nothing to do.
+/// Two batches on one folder at the same time share its cases; shares are disjoint, and a repeated share
+/// finds nothing to do.
 #[test]
 fn batches_and_shares_on_one_folder_diagnose_every_case_once() {
     let scratch = tempfile::tempdir().unwrap();
@@ -159,7 +161,7 @@ fn batches_and_shares_on_one_folder_diagnose_every_case_once() {
         assert_eq!(answer(&answers, &id), answer(&shared, &id));
     }
 
-    // Asked for with other options, or answered by another version, an answer is not taken for the one asked for.
+    // An answer from other options or from another version is not accepted.
     let (code, found) = batch_result(batch(&cases, &answers, &["--without", "backlash"]));
     assert_eq!((code, count(&found, "diagnosed")), (Some(1), 0));
     assert!(found["failed"][0]["message"].as_str().unwrap().contains("with another without: []"), "{found}");
@@ -171,7 +173,7 @@ fn batches_and_shares_on_one_folder_diagnose_every_case_once() {
     assert!(found["failed"][0]["message"].as_str().unwrap().contains("with another version: \"9"), "{found}");
 }
 
-/// The cases of a batch that is killed are free at once for the next one.
+/// The cases of a killed batch are free at once for the next batch.
 #[test]
 fn a_killed_batch_leaves_its_cases_to_the_next() {
     let scratch = tempfile::tempdir().unwrap();
@@ -184,7 +186,7 @@ fn a_killed_batch_leaves_its_cases_to_the_next() {
     }
     first.kill().unwrap();
     first.wait().unwrap();
-    // As if it had been killed in the middle of writing.
+    // As if the batch had been killed while writing.
     let open = (0..4).map(|number| answers.join(format!("case-{number}")));
     for place in open.filter(|place| !place.join("diagnosis.json").exists()) {
         write(&place, ".tmpXYZ123", "half an ans");
@@ -202,8 +204,8 @@ fn a_share_of_one_diagnosis_is_refused() {
     assert!(message.contains("--shard shares the cases of a batch"), "{message}");
 }
 
-/// The report on the folder of a batch: one page and one file over all answers, with the labels of the cases and the
-/// reasons why some have no answer.
+/// Tests the report on the folder of a batch: one page and one file for all answers, with the labels of the
+/// cases and the reasons for missing answers.
 #[test]
 fn the_answers_of_a_batch_make_one_page() {
     let scratch = tempfile::tempdir().unwrap();
@@ -226,7 +228,7 @@ fn the_answers_of_a_batch_make_one_page() {
     for part in ["Of 3 diagnoses, ", "One case gave no answer", "case-2/diagnosis.json", "`zero` in column"] {
         assert!(page.contains(part), "{part}");
     }
-    // Mended, the case is no failure any more.
+    // After its record is repaired, the case no longer counts as a failure.
     write(&cases, "garbled/record-000.csv", &decay(500, 0.7));
     assert_eq!(batch_result(batch(&cases, &answers, &[])).0, Some(0));
     assert!(!answers.join("garbled/failed.json").exists());

@@ -1,4 +1,4 @@
-//! `trainer simulate`: what it leaves, that it is the same every time, and that the truth stays sealed.
+//! Tests of `trainer simulate`: its files, their reproducibility, and the sealed truth.
 
 use crate::support::{number, result, root, trainer};
 use serde_json::Value;
@@ -14,7 +14,7 @@ pub(crate) fn simulate(arguments: &[&str]) -> (Value, TempDir) {
     (found, folder)
 }
 
-/// Every file below a folder but the diary and what holds wall times, by relative path.
+/// Returns every file below a folder by relative path, except the log and files with wall times.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -32,12 +32,12 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// Files that tell the time or the machine.
+/// Files that depend on the time or the machine.
 const OF_THE_MOMENT: &[&str] = &[".lock", "environment.json", "events.jsonl", "result.json"];
 
 const SMALL: &[&str] = &["configs/simulate.toml", "simulate.systems=3", "record.seconds=2"];
 
-/// What other runs keep and can do, these can: environment, verification, export.
+/// A simulation has the features of other runs: environment, verification, export.
 #[test]
 fn it_is_a_run_like_others() {
     let (_, folder) = simulate(SMALL);
@@ -73,7 +73,7 @@ fn it_leaves_records_what_is_believed_and_the_truth_apart() {
     let record = String::from_utf8(files[Path::new("records/system-000/record-000.csv")].clone()).unwrap();
     assert!(record.starts_with("# origin: simulated\n"), "{}", &record[..200]);
     assert!(record.contains("\ntime_s,angle_rad\n"));
-    // Nothing that is handed on with the records tells what generated them.
+    // No file that is given away with the records reveals what generated them.
     for (name, text) in files.iter().filter(|(name, _)| name.starts_with("records")) {
         let text = String::from_utf8_lossy(text);
         for word in ["friction", "drag", "gravity", "seed", "torque"] {
@@ -102,7 +102,7 @@ fn a_truth_that_was_tampered_with_does_not_open() {
         let text = std::fs::read_to_string(folder.path().join(line["truth"].as_str().unwrap())).unwrap();
         let stated = line["truth_digest"].as_str().unwrap().to_owned();
         let truth = Sealed::<Truth>::from_stored(text.clone(), stated.clone()).open().unwrap();
-        // An intact truth gives the record's file again.
+        // An intact truth reproduces the record's file.
         let record = simulator::generate(&truth).unwrap();
         let sampling = truth.sampling;
         let csv = simulator::csv_text(&record, sampling.stamp_decimals, sampling.value_decimals);
@@ -128,8 +128,8 @@ fn the_shipped_record_is_what_its_configuration_gives() {
     );
 }
 
-/// The twin of the paper's rig, through the paper's pipeline: within 3 % of its decay rate, 0.02 of its R² and
-/// three of its 69 peaks; bending in ln A, as the rig's does.
+/// The shipped record is a twin of the paper's rig: with the paper's pipeline it is within 3 % of its decay
+/// rate, 0.02 of its R² and three of its 69 peaks, and bends in ln A as the rig's does.
 #[test]
 fn the_shipped_record_resembles_the_papers() {
     let (_, found, _) =

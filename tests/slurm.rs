@@ -1,4 +1,5 @@
-//! Job arrays on a Slurm, which `tests/slurm/single_node.sh` sets up; without it these tests say loudly that they were left out.
+//! Tests of job arrays on a Slurm cluster, set up by `tests/slurm/single_node.sh`; skipped with a notice if
+//! there is none.
 
 use crate::support::{NOMINAL, root, trainer};
 use serde_json::Value;
@@ -10,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Runs that take a second or so each.
+/// Runs that take about a second each.
 const SLOW: &[&str] = &[
     "sweep",
     "configs/pinn.toml",
@@ -21,7 +22,7 @@ const SLOW: &[&str] = &[
     "checkpoint.interval_s=0",
 ];
 
-/// The cluster, one test at a time; `None`, said loudly, where there is none.
+/// Locks the cluster for one test at a time; `None`, with a notice, if there is none.
 fn cluster() -> Option<MutexGuard<'static, ()>> {
     static ONE: Mutex<()> = Mutex::new(());
     if std::env::var_os("RINGDOWN_SLURM").is_some() {
@@ -32,7 +33,7 @@ fn cluster() -> Option<MutexGuard<'static, ()>> {
     None
 }
 
-/// A folder that the node sees too.
+/// Creates a folder that the node can access too.
 fn scratch() -> (TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out").to_str().unwrap().to_owned();
@@ -48,7 +49,7 @@ fn json(path: &Path) -> Value {
         .unwrap()
 }
 
-/// Hands work to Slurm; gives the jobs' numbers.
+/// Submits work to Slurm and returns the jobs' numbers.
 fn launch(words: &[&str], out: &str, options: &[&str]) -> Vec<u64> {
     let output = trainer(&[words, &["--out", out, "--launcher", "slurm", "--json"], options].concat());
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
@@ -61,7 +62,7 @@ fn slurm(program: &str, words: &[&str]) -> String {
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
-/// The states of a job's tasks that are waiting or running.
+/// Returns the states of a job's tasks that are waiting or running.
 fn queued(job: u64) -> Vec<String> {
     let job = job.to_string();
     let told = slurm("squeue", &["--noheader", "--array", "--format=%T", "--jobs", &job]);
@@ -72,7 +73,7 @@ fn running(jobs: &[u64]) -> usize {
     jobs.iter().flat_map(|job| queued(*job)).filter(|state| state == "RUNNING").count()
 }
 
-/// The final states of a job's tasks.
+/// Returns the final states of a job's tasks.
 fn ended(job: u64) -> Vec<String> {
     let told = slurm("scontrol", &["--oneliner", "show", "job", &job.to_string()]);
     let state = |line: &str| Some(line.split("JobState=").nth(1)?.split(' ').next()?.to_owned());
@@ -97,7 +98,7 @@ fn states(out: &str) -> Vec<String> {
     lines.iter().map(|line| line["state"].as_str().unwrap().to_owned()).collect()
 }
 
-/// What the runs of a sweep found, by digest.
+/// Returns the results of a sweep's runs, by digest.
 fn numbers(out: &str) -> BTreeMap<String, String> {
     let manifest = json(&Path::new(out).join("sweep.json"));
     let of = |line: &Value| {
@@ -107,7 +108,7 @@ fn numbers(out: &str) -> BTreeMap<String, String> {
     manifest["runs"].as_array().unwrap().iter().map(of).collect()
 }
 
-/// The names of a run's events, for every run of a sweep.
+/// Returns the names of a run's events, for every run of a sweep.
 fn events(out: &str) -> Vec<Vec<String>> {
     let runs = std::fs::read_dir(Path::new(out).join("runs")).into_iter().flatten().flatten();
     let named = |line: &str| Some(serde_json::from_str::<Value>(line).ok()?["event"].as_str()?.to_owned());
@@ -125,7 +126,7 @@ fn logs(out: &str) -> BTreeMap<PathBuf, String> {
     files.map(|file| file.path()).filter(is_log).map(read).collect()
 }
 
-/// The processes whose command line names a folder.
+/// Returns the processes whose command line names a folder.
 fn working_in(out: &str) -> Vec<String> {
     let processes = std::fs::read_dir("/proc").unwrap().flatten();
     let names =
@@ -136,8 +137,8 @@ fn working_in(out: &str) -> Vec<String> {
         .collect()
 }
 
-/// More shares than one array may have, on a partition that holds two tasks: the numbers are those of one process, and a
-/// second launch finds nothing to do.
+/// More shares than one array may have, on a partition for two tasks: the numbers equal those of one process,
+/// and a second launch finds nothing to do.
 #[test]
 fn arrays_of_a_sweep_wait_for_a_full_partition_and_give_the_numbers_of_one_process() {
     let Some(_cluster) = cluster() else { return };
@@ -162,7 +163,7 @@ fn arrays_of_a_sweep_wait_for_a_full_partition_and_give_the_numbers_of_one_proce
     assert!(events(&out).iter().all(|run| *run == ["start", "end"]), "{:?}", events(&out));
 }
 
-/// No more tasks at once than were asked for.
+/// The number of simultaneous tasks stays within the requested limit.
 #[test]
 fn tasks_are_held_back_where_that_is_asked_for() {
     let Some(_cluster) = cluster() else { return };
@@ -178,7 +179,8 @@ fn tasks_are_held_back_where_that_is_asked_for() {
     assert_eq!((most, states(&out)), (1, vec!["done".to_owned(); 5]));
 }
 
-/// A run outside of its tolerance is a row of the table; the task has done its work, and what waits for it begins.
+/// A run outside of its tolerance is a row of the table; its task counts as successful, and dependent jobs
+/// start.
 #[test]
 fn a_run_out_of_tolerance_does_not_fail_its_task() {
     let Some(_cluster) = cluster() else { return };
@@ -195,7 +197,8 @@ fn a_run_out_of_tolerance_does_not_fail_its_task() {
     assert_eq!(json(&Path::new(&out).join("result.json"))["pass"], false);
 }
 
-/// `kill -9` of every task in the middle: the table of what there is, and the next launch makes the rest, to the bit.
+/// After `kill -9` of every task in the middle, the table has the finished runs, and the next launch makes
+/// the others, to the bit.
 #[test]
 fn killed_tasks_leave_a_table_and_the_next_array_makes_the_rest() {
     let Some(_cluster) = cluster() else { return };
@@ -211,7 +214,8 @@ fn killed_tasks_leave_a_table_and_the_next_array_makes_the_rest() {
             .count()
     };
     until("no run comes to its end", || done() >= 1);
-    // Not by scancel, which asks first: the programs themselves, as the kernel does when memory runs out.
+    // The processes are killed directly, as by the kernel when memory runs out; scancel would ask them to
+    // stop first.
     for process in working_in(&out) {
         assert!(Command::new("kill").args(["-9", &process]).status().unwrap().success());
     }
@@ -230,7 +234,7 @@ fn killed_tasks_leave_a_table_and_the_next_array_makes_the_rest() {
     assert_eq!(numbers(&out), numbers(&alone));
 }
 
-/// A second array on the folder of a live one: the runs are shared, and each is begun once.
+/// A second array on the folder of a live one shares the runs, and each run starts once.
 #[test]
 fn a_second_array_beside_a_live_one_shares_its_runs() {
     let Some(_cluster) = cluster() else { return };
@@ -251,7 +255,7 @@ fn a_second_array_beside_a_live_one_shares_its_runs() {
     assert!(events.iter().all(|run| *run == ["start", "end"]), "{events:?}");
 }
 
-/// A task that goes back to the queue goes on where it was, and its log keeps what it said before.
+/// A task that is requeued resumes, and its log keeps the earlier lines.
 #[test]
 fn a_task_put_in_the_queue_again_adds_to_its_log() {
     let Some(_cluster) = cluster() else { return };
@@ -273,7 +277,7 @@ fn a_task_put_in_the_queue_again_adds_to_its_log() {
     assert!(events(&out).iter().all(|run| run.iter().filter(|event| *event == "start").count() == 1));
 }
 
-/// A batch of diagnoses and trials go by the same launcher.
+/// A batch of diagnoses and trials use the same launcher.
 #[test]
 fn a_batch_and_trials_run_as_arrays() {
     let Some(_cluster) = cluster() else { return };
@@ -324,7 +328,7 @@ fn a_batch_and_trials_run_as_arrays() {
     assert_eq!((&scores["cases"], &scores["unanswered"]), (&4.into(), &0.into()), "{:?}", logs(&out));
 }
 
-/// What Slurm refuses is said in its words, with the options that mend it.
+/// A refusal by Slurm is reported in its own words, with the options that help.
 #[test]
 fn a_refusal_says_what_to_change() {
     let Some(_cluster) = cluster() else { return };

@@ -1,4 +1,4 @@
-//! What the tests share: the program, scratch folders, the measured records.
+//! Shared parts of the tests: the program, scratch folders, the measured records.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// The workspace's root.
+/// Returns the root of the workspace.
 pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
 }
 
-/// Runs the program from the workspace's root.
+/// Runs the program from the root of the workspace.
 pub(crate) fn trainer(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_trainer")).args(arguments).current_dir(root()).output().unwrap()
 }
 
-/// An oscillator of 3.5 Hz, per unit of inertia, as a nominal simulator.
+/// Nominal simulator of an oscillator of 3.5 Hz, per unit of inertia.
 pub(crate) const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
 
-/// Simulates [`NOMINAL`] with what a configuration has more, into `made` below a folder, and gives the place of a file
-/// of the records.
+/// Simulates [`NOMINAL`] with the additional text of a configuration, into `made` below a folder. Returns a
+/// function that gives the path of a file of the records.
 pub(crate) fn simulated(folder: &Path, more: &str, overrides: &[&str]) -> impl Fn(&str) -> String + use<> {
     let (config, made) = (folder.join("simulated.toml"), folder.join("made"));
     std::fs::write(&config, format!("{NOMINAL}{more}")).unwrap();
@@ -33,7 +33,7 @@ pub(crate) fn simulated(folder: &Path, more: &str, overrides: &[&str]) -> impl F
     move |name| made.join("records").join(name).to_str().unwrap().to_owned()
 }
 
-/// Runs an experiment into a scratch folder and gives its result, whatever the exit code.
+/// Runs an experiment into a scratch folder and returns exit code, result and folder, for any exit code.
 pub(crate) fn result(arguments: &[&str]) -> (i32, Value, TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let mut all = arguments.to_vec();
@@ -46,8 +46,8 @@ pub(crate) fn result(arguments: &[&str]) -> (i32, Value, TempDir) {
     (output.status.code().unwrap(), value, folder)
 }
 
-/// A measured record beside the project, or `None`, said loudly: the test harness hides what a passing
-/// test prints, so this goes around it.
+/// Returns the path of a measured record beside the project. `None`, with a notice, if it is absent. The
+/// notice bypasses the test harness, which hides the output of passing tests.
 pub(crate) fn measured(name: &str) -> Option<String> {
     let relative = format!("../shared/data/{name}");
     if root().join(&relative).exists() {
@@ -58,17 +58,17 @@ pub(crate) fn measured(name: &str) -> Option<String> {
     None
 }
 
-/// A JSON number by path, such as `/envelope/peaks`.
+/// Returns a JSON number by path, such as `/envelope/peaks`.
 pub(crate) fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {path}"))
 }
 
-/// Files that tell the time or the machine.
+/// Files that depend on the time or the machine.
 const OF_THE_MOMENT: &[&str] =
     &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
 
-/// Every file of a run as text or digest, but those that tell the time or the machine, durations taken out of
-/// the others.
+/// Returns every file of a run as text or digest, except those that depend on the time or the machine;
+/// durations are removed from the others.
 pub(crate) fn timeless_files(folder: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

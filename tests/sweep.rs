@@ -1,4 +1,5 @@
-//! `trainer sweep`: every combination, frozen beforehand, resumable, the same bits however it is run.
+//! Tests of `trainer sweep`: every combination, frozen beforehand, resumable, and the same bits for any way
+//! of running it.
 
 use crate::support::{result, root, timeless_files, trainer};
 use serde_json::Value;
@@ -9,7 +10,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
-/// Runs that take a moment each: a few steps of a network that have no tolerance to meet.
+/// Runs that take a moment each: a few steps of a network without a tolerance.
 pub(crate) const SLOW: &[&str] = &[
     "sweep",
     "configs/pinn.toml",
@@ -50,7 +51,7 @@ pub(crate) fn states(out: &str) -> Vec<String> {
     lines(out).iter().map(|line| line["state"].as_str().unwrap().to_owned()).collect()
 }
 
-/// A value without its wall times.
+/// Removes the wall times from a value.
 fn timeless(mut value: Value) -> Value {
     fn forget(value: &mut Value) {
         match value {
@@ -66,7 +67,7 @@ fn timeless(mut value: Value) -> Value {
     value
 }
 
-/// Every run's result by digest, wall times taken away.
+/// Returns every run's result by digest, without wall times.
 pub(crate) fn results(out: &str) -> BTreeMap<String, Value> {
     let of = |line: &Value| {
         let run = Path::new(out).join(line["run"].as_str().unwrap());
@@ -75,7 +76,7 @@ pub(crate) fn results(out: &str) -> BTreeMap<String, Value> {
     lines(out).iter().map(of).collect()
 }
 
-/// When each run that came to its end did so.
+/// Returns the time at which each finished run ended.
 pub(crate) fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
     let entries = std::fs::read_dir(Path::new(out).join("state")).into_iter().flatten();
     entries
@@ -95,7 +96,7 @@ pub(crate) fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
         .unwrap()
 }
 
-/// Waits until so many runs came to their end.
+/// Waits until a number of runs have ended.
 pub(crate) fn wait_for(child: &mut Child, out: &str, runs: usize) {
     let since = Instant::now();
     while ends(out).len() < runs {
@@ -130,13 +131,13 @@ fn every_combination_becomes_an_ordinary_run() {
     let csv = std::fs::read_to_string(Path::new(&out).join("table.csv")).unwrap();
     assert_eq!(csv.lines().count(), 7, "{csv}");
 
-    // The run of a combination is the run of its overrides alone.
+    // The run of a combination equals the run with its overrides alone.
     let last = &lines(&out)[5];
     assert_eq!(last["overrides"], serde_json::json!(["estimator=lstm", "seed=2"]));
     let (_, alone, _) = result(&["configs/pinn.toml", "estimator=lstm", "seed=2"]);
     assert_eq!(results(&out)[last["digest"].as_str().unwrap()], timeless(alone));
 
-    // Its folder is one that `trainer report` reads, and so is the sweep's; the pages come out the same.
+    // `trainer report` can read its folder, and that of the sweep; the pages come out the same.
     let run = Path::new(&out).join(last["run"].as_str().unwrap());
     for folder in [run.as_path(), Path::new(&out)] {
         let page = folder.join("report.html");
@@ -156,7 +157,7 @@ fn threads_and_shares_do_not_change_a_bit() {
     assert_eq!(code(&sweep(&arguments, &one, &["--threads", "1", "--quiet"])), 0);
     let (_two, two) = scratch();
     assert_eq!(code(&sweep(&arguments, &two, &["--threads", "2", "--quiet"])), 0);
-    // Three shares at the same time on one folder, each of which may be the one that freezes it.
+    // Three shares run at the same time on one folder; any of them may be the one that freezes it.
     let (_shares, shares) = scratch();
     let children: Vec<Child> =
         (1..=3).map(|index| start(&arguments, &shares, &["--shard", &format!("{index}/3")])).collect();
@@ -166,14 +167,14 @@ fn threads_and_shares_do_not_change_a_bit() {
     assert_eq!(results(&one), results(&two));
     assert_eq!(results(&one), results(&shares));
     assert_eq!(results(&one).len(), 7);
-    // Whoever came last left the table complete.
+    // The last share left a complete table.
     let table = |out: &str| {
         let mut table = timeless(json(&Path::new(out).join("result.json")));
         table.as_object_mut().unwrap().remove("folder");
         table
     };
     assert_eq!(table(&one), table(&shares));
-    // Nobody made a run twice.
+    // No run was made twice.
     assert_eq!(std::fs::read_dir(Path::new(&shares).join("runs")).unwrap().count(), 7);
 }
 
@@ -183,7 +184,7 @@ fn a_share_runs_its_own_part_only() {
     let arguments = ["sweep", "configs/ols.toml", "seed=0..4"];
     assert_eq!(code(&sweep(&arguments, &out, &["--shard", "2/2", "--quiet"])), 0);
     assert_eq!(states(&out), ["pending", "done", "pending", "done", "pending"]);
-    // The rest later, from the frozen list alone.
+    // The other runs follow later, from the frozen list alone.
     assert_eq!(code(&sweep(&["sweep"], &out, &["--resume", "--shard", "1/2", "--quiet"])), 0);
     assert_eq!(states(&out), ["done"; 5]);
     let refused = sweep(&arguments, &out, &["--shard", "3/2"]);
@@ -222,7 +223,7 @@ fn one_failing_run_is_one_row_and_the_others_go_on() {
     let output = sweep(&arguments, &out, &["--threads", "1"]);
     assert_eq!(code(&output), 1);
     assert_eq!(states(&out), ["failed", "failed", "done", "done"]);
-    // At once, not at the end: before the runs that follow.
+    // The failure is reported at once, before the runs that follow.
     let message = said(&output);
     let failed = message.find("run 0001").unwrap_or_else(|| panic!("{message}"));
     assert!(failed < message.find("0003 (").unwrap(), "{message}");
@@ -233,14 +234,14 @@ fn one_failing_run_is_one_row_and_the_others_go_on() {
     let page = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
     assert!(page.contains("bad.csv:3:") && page.matches("class=\"fails\"").count() == 2);
 
-    // Going on makes neither what is done nor what failed; asked for, what failed is made again.
+    // Resuming repeats neither finished nor failed runs; on request the failed ones are made again.
     let before = ends(&out);
     assert_eq!(code(&sweep(&arguments, &out, &["--resume", "--quiet"])), 1);
     assert_eq!(ends(&out), before);
     let again = sweep(&arguments, &out, &["--resume", "--failed"]);
     assert!(code(&again) == 1 && said(&again).contains("2 of them now"), "{}", said(&again));
     assert_eq!(ends(&out).iter().filter(|(path, time)| before[*path] == **time).count(), 2);
-    // A record that is another one by now is not swept into the same table.
+    // A record that has changed since is not swept into the same table.
     std::fs::write(&bad, "time_s,angle_rad\n0,1\n0.1,2\n").unwrap();
     let refused = sweep(&arguments, &out, &["--resume", "--failed"]);
     assert_eq!(code(&refused), 2);
@@ -265,7 +266,7 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
     assert_eq!(code(&sweep(SLOW, &whole, &["--quiet"])), 0);
     let (_folder, out) = scratch();
     let mut kept: BTreeMap<PathBuf, SystemTime> = BTreeMap::new();
-    // Killed while it freezes, after the first runs, and in the middle of others.
+    // The sweep is killed while it freezes, after the first runs, and in the middle of others.
     for (runs, pause) in [(0, 10), (1, 0), (2, 40), (4, 90)] {
         let mut child = start(SLOW, &out, &["--resume", "--threads", "1"]);
         wait_for(&mut child, &out, runs);
@@ -273,7 +274,7 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
         child.kill().unwrap();
         child.wait().unwrap();
         let now = ends(&out);
-        // What was done stays as it was.
+        // Finished runs stay as they were.
         for (path, time) in &kept {
             assert_eq!(now.get(path), Some(time), "{}", path.display());
         }
@@ -284,7 +285,7 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
         }
     }
     let before = ends(&out);
-    // As if it had been killed in the middle of writing each kind of file.
+    // As if the sweep had been killed while writing each kind of file.
     for place in ["", "configs", "state"] {
         std::fs::write(Path::new(&out).join(place).join(".tmpXYZ123"), "half a fi").unwrap();
     }
@@ -298,7 +299,7 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
     assert_eq!(states(&out), ["done"; 6]);
 }
 
-/// Temporary files in a folder and below it.
+/// Returns the temporary files in a folder and below it.
 pub(crate) fn temporary(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -312,14 +313,14 @@ pub(crate) fn temporary(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The lines of a run's log by name.
+/// Returns the events of a run's log by name.
 pub(crate) fn events(run: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap_or_default();
     let named = |line: &str| Some(serde_json::from_str::<Value>(line).ok()?["event"].as_str()?.to_owned());
     text.lines().filter_map(named).collect()
 }
 
-/// Waits until a run of a sweep has kept the state of a fit, and kills the sweep.
+/// Waits until a run of a sweep has stored the state of a fit, and kills the sweep.
 fn killed_within_a_fit(arguments: &[&str], out: &str, run: &Path) {
     let mut child = start(arguments, out, &["--resume", "--threads", "1"]);
     let since = Instant::now();
@@ -332,9 +333,9 @@ fn killed_within_a_fit(arguments: &[&str], out: &str, run: &Path) {
     child.wait().unwrap();
 }
 
-/// A run that the sweep was killed in goes on in its own folder: from its last checkpoint, or as finished
-/// where the kill came before the sweep was told. Where that folder is damaged, the run begins again beside
-/// it.
+/// A run that was in progress when the sweep was killed resumes in its own folder: from its last checkpoint,
+/// or as finished if the kill came before the sweep noted its end. If that folder is damaged, the run starts
+/// again beside it.
 #[test]
 fn a_run_killed_within_a_sweep_goes_on_in_its_folder() {
     let arguments = [SLOW, &["fit.seeds=3", "checkpoint.interval_s=0"]].concat();
@@ -347,7 +348,7 @@ fn a_run_killed_within_a_sweep_goes_on_in_its_folder() {
     killed_within_a_fit(&arguments, &out, &runs.join(names[1]));
     assert_eq!(events(&runs.join(names[0])), ["start", "resume", "end"]);
     killed_within_a_fit(&arguments, &out, &runs.join(names[2]));
-    // As if it had been killed between the end of a run and the line about it.
+    // As if the sweep had been killed between the end of a run and the line about it.
     let state = ends(&out).into_keys().next().unwrap();
     std::fs::remove_file(state).unwrap();
     let damaged =
@@ -373,7 +374,7 @@ fn a_run_killed_within_a_sweep_goes_on_in_its_folder() {
     }
 }
 
-/// Killed before its manifest was written, a sweep was not begun; the files that come first are no obstacle.
+/// A sweep that was killed before its manifest was written has not begun; the earlier files are no obstacle.
 #[test]
 fn killed_while_it_froze_it_begins_again() {
     let (_folder, out) = scratch();
@@ -436,22 +437,22 @@ fn another_configuration_is_refused_with_the_difference() {
     std::fs::write(&config, format!("{text}\n[envelope.recommended]\nfloor_in_noise = 9.0\n")).unwrap();
     let edited = refused(&["sweep", own, "seed=0,1"], &["--resume"]);
     assert!(edited.contains("`envelope.recommended.floor_in_noise = 8.0` then, "), "{edited}");
-    // Where values are written does not matter, only what they are.
+    // The place of values in the file does not matter, only the values do.
     std::fs::write(&config, text.replacen("seed", "# moved\nseed", 1)).unwrap();
     assert_eq!(code(&sweep(&["sweep", own, "seed=0..1"], &out, &["--resume", "--quiet"])), 0);
-    // The frozen list needs no configuration, but it has to be what was frozen.
+    // The frozen list needs no configuration, but it must be unchanged.
     assert_eq!(code(&sweep(&["sweep"], &out, &["--resume", "--quiet"])), 0);
     let frozen = Path::new(&out).join("configs/0002.toml");
     let text = std::fs::read_to_string(&frozen).unwrap();
     std::fs::write(&frozen, text.replace("tolerance_percent = 0.1", "tolerance_percent = 5.0")).unwrap();
     let changed = refused(&["sweep"], &["--resume"]);
     assert!(changed.contains("0002.toml: the frozen configuration is missing or was changed"), "{changed}");
-    // A folder with something else in it is nobody's sweep.
+    // A folder with other files is not used for a sweep.
     let occupied = refused_in(folder.path(), own);
     assert!(occupied.contains("is not empty"), "{occupied}");
 }
 
-/// What is said where the folder for a sweep holds other files.
+/// Returns the message if the folder for a sweep has other files.
 fn refused_in(folder: &Path, config: &str) -> String {
     let output = sweep(&["sweep", config, "seed=0,1"], folder.to_str().unwrap(), &["--resume"]);
     assert_eq!(code(&output), 2);

@@ -1,4 +1,4 @@
-//! `trainer trials`: blind answers, seals that hold, and going on after an interruption.
+//! Tests of `trainer trials`: blind answers, tamper-proof seals, and resuming after an interruption.
 
 use crate::support::{number, result, root, trainer};
 use serde_json::Value;
@@ -31,7 +31,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// Every answer below a folder by case, wall times taken away.
+/// Returns every answer below a folder by case, without wall times.
 fn answers(folder: &Path) -> BTreeMap<String, Value> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     entries
@@ -64,7 +64,7 @@ fn written(folder: &Path) -> BTreeMap<String, SystemTime> {
         .collect()
 }
 
-/// The exit code and what was said on standard error.
+/// Returns the exit code and the messages on standard error.
 fn said(arguments: &[&str]) -> (i32, String) {
     let output = trainer(arguments);
     (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
@@ -100,7 +100,7 @@ fn trials_are_blind_sealed_and_resumable() {
     let out = root.to_str().unwrap();
     let full = root.join("answers/full");
 
-    // What the diagnosis is given does not tell what it hides, and what it hides was sealed before.
+    // The inputs of the diagnosis do not reveal what they hide, and the truth was sealed before.
     for case in std::fs::read_dir(root.join("cases/full")).unwrap() {
         for file in std::fs::read_dir(case.unwrap().path()).unwrap() {
             let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
@@ -124,7 +124,8 @@ fn trials_are_blind_sealed_and_resumable() {
     assert_eq!(std::fs::read_to_string(root.join("cases.csv")).unwrap().lines().count(), 13);
     assert!(std::fs::read_to_string(root.join("report.html")).unwrap().contains("Targets and results"));
 
-    // Scored again from the files alone: the same; with a truth that was changed: refused, naming it.
+    // Scoring again from the files alone gives the same scores; with a changed truth it is refused, and the
+    // truth is named.
     let again = trainer(&["trials", "--score", out, "--json"]);
     assert_eq!(again.status.code(), Some(0));
     let again: Value = serde_json::from_slice(&again.stdout).unwrap();
@@ -138,7 +139,7 @@ fn trials_are_blind_sealed_and_resumable() {
     assert_eq!(code, 2, "{message}");
     assert!(message.contains("truth/000003.json: the seal is broken"), "{message}");
 
-    // Without any truth on the disk the diagnosis says the same, to the bit.
+    // Without any truth on the disk the diagnosis gives the same answers, to the bit.
     std::fs::remove_dir_all(root.join("truth")).unwrap();
     let blind = root.join("blind");
     let (cases, blind_out) = (root.join("cases/full"), blind.to_str().unwrap());
@@ -147,7 +148,7 @@ fn trials_are_blind_sealed_and_resumable() {
     assert_eq!(code, 0, "{message}");
     assert_eq!(answers(&blind), answers(&full));
 
-    // Resumed after two answers are gone: these are computed, the others left alone.
+    // After two answers are removed, resuming computes these two and leaves the others unchanged.
     let before = written(&full);
     for id in ["000002", "000007"] {
         std::fs::remove_dir_all(full.join(id)).unwrap();
@@ -161,12 +162,13 @@ fn trials_are_blind_sealed_and_resumable() {
         assert_eq!(time == before[&id], !["000002", "000007"].contains(&id.as_str()), "{id}");
     }
 
-    // Now the truths are open: no further answer would be blind.
+    // Now the truths are open, so that no further answer would be blind.
     std::fs::remove_dir_all(full.join("000002")).unwrap();
     let (code, message) = said(&resume);
     assert!(code == 2 && message.contains("the truths are open, and 1 answers are missing"), "{message}");
 
-    // The values decide, not where each was written: the folder's own configuration is the one it was begun with.
+    // Only the values matter, not the place where each was written: the folder's own configuration is the
+    // original one.
     let own = root.join("config.toml");
     let (code, message) = said(&["trials", own.to_str().unwrap(), "--out", out, "--resume"]);
     assert!(code == 2 && message.contains("the truths are open"), "{message}");
@@ -179,8 +181,8 @@ fn trials_are_blind_sealed_and_resumable() {
     assert!(code == 2 && message.contains("--resume"), "{message}");
 }
 
-/// Shares at the same time on one folder: cases are made once, nothing is opened before the last answer, and the scores are
-/// those of one process.
+/// Shares run at the same time on one folder: each case is made once, no truth is opened before the last
+/// answer, and the scores are those of one process.
 #[test]
 fn shares_give_the_scores_of_one_process_and_the_last_one_opens_the_seals() {
     let (code, whole, _whole) = result(&[&["trials"], TINY].concat());
@@ -213,7 +215,7 @@ fn shares_give_the_scores_of_one_process_and_the_last_one_opens_the_seals() {
         assert_eq!(other.wait().unwrap().code(), Some(0));
     }
     let scores = json(&Path::new(&out).join("result.json"));
-    // The command that asks again names the folder.
+    // The command to run a failed case again contains the folder's name.
     let without_commands = |scores: Value| {
         let mut scores = without_times(scores);
         for failure in scores["failures"].as_array_mut().unwrap() {
@@ -234,7 +236,7 @@ fn what_is_no_trials_folder_is_refused() {
     assert!(code == 2 && message.contains("manifest.json is missing"), "{message}");
 }
 
-/// A law too small to be seen: `unknown` would be right, and nothing is said.
+/// For a law too small to be detected, `unknown` would be right, but nothing is reported.
 #[test]
 fn a_gate_that_is_missed_fails_the_run_and_its_scoring() {
     let scratch = tempfile::tempdir().unwrap();

@@ -1,18 +1,18 @@
-//! Units mistaken for one another: the factor between them is recognized, and said.
+//! Tests of mistaken units: the factor between them is recognized and reported.
 
 use crate::gaps::driven;
 use crate::reading::write;
 use crate::support::trainer;
 use serde_json::Value;
 
-/// Standard output as JSON.
+/// Runs the program and returns its standard output as JSON.
 fn answer(arguments: &[&str]) -> Value {
     let output = trainer(arguments);
     let message = String::from_utf8_lossy(&output.stderr);
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {message}"))
 }
 
-/// The same with every input times a factor, under another header.
+/// Returns the text with every input times a factor, under another header.
 fn scaled(text: &str, header: &str, factor: f64) -> String {
     text.lines().skip(1).fold(format!("{header}\n"), |scaled, line| {
         let (rest, input) = line.rsplit_once(',').unwrap();
@@ -20,7 +20,7 @@ fn scaled(text: &str, header: &str, factor: f64) -> String {
     })
 }
 
-/// An input in kgf m, of degrees, in mN m or in turns, that was taken to be in SI units.
+/// An input in kgf m, of degrees, in mN m or in turns, that was read as SI units.
 #[test]
 fn a_driven_record_names_the_factor_that_its_input_is_off_by() {
     let scratch = tempfile::tempdir().unwrap();
@@ -46,7 +46,7 @@ fn a_driven_record_names_the_factor_that_its_input_is_off_by() {
         let said = found["verdict"]["summary"].as_str().unwrap();
         assert!(said.contains(words), "{factor}: {said}");
     }
-    // With the unit stated nothing is off.
+    // With the right unit stated there is no factor.
     let log =
         write(scratch.path(), "kgf.csv", &scaled(&text, "time_s,angle_rad,torque [kgf m]", 1.0 / 9.806_65));
     let out = scratch.path().join("answer-kgf");
@@ -56,7 +56,7 @@ fn a_driven_record_names_the_factor_that_its_input_is_off_by() {
     assert_eq!(found["verdict"]["status"], "none", "{said}");
 }
 
-/// The period of a free swing tells the square root.
+/// The period of a free swing gives the square root of the factor.
 #[test]
 fn a_period_tells_the_factor_that_its_stiffness_is_off_by() {
     let scratch = tempfile::tempdir().unwrap();
@@ -78,8 +78,8 @@ fn a_period_tells_the_factor_that_its_stiffness_is_off_by() {
     }
 }
 
-/// A gyroscope with a bias, an accelerometer that feels gravity: a swing's rate has no mean, and an effect had been
-/// named for it.
+/// Tests a gyroscope with a bias and an accelerometer that measures gravity. The rate of a swing has no mean;
+/// a mean once led to a reported effect.
 #[test]
 fn a_mean_that_no_swing_has_is_told_and_taken_away_as_printed() {
     let scratch = tempfile::tempdir().unwrap();

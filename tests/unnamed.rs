@@ -1,9 +1,10 @@
-//! A torque along the position: what users read of it, and that the repaired simulator has it.
+//! Tests of a torque along the position: the text for users, and its part in the repaired simulator.
 
 use crate::support::{number, result, simulated, trainer};
 use serde_json::Value;
 
-/// A decay with nothing missing but a torque that repeats 20 times in a turn, or every 2π/20 m.
+/// Returns the configuration of a decay that lacks only a torque that repeats 20 times per turn, or every
+/// 2π/20 m.
 fn config(coordinate: &str) -> String {
     format!(
         r#"

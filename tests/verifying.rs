@@ -1,4 +1,4 @@
-//! `trainer verify`: a finished run is made again from its folder alone.
+//! Tests of `trainer verify`: a finished run is repeated from its folder alone.
 
 use crate::support::{root, trainer};
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! A headless Chromium, driven by its DevTools protocol through a pipe: JSON messages with a zero byte between them.
+//! A headless Chromium, driven by its DevTools protocol through a pipe: JSON messages separated by zero
+//! bytes.
 
 use report::plot::Hue;
 use serde_json::{Value, json};
@@ -9,22 +10,22 @@ use tempfile::TempDir;
 
 const NAMES: &[&str] = &["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Where the protocol speaks through the third and the fourth file, which the shell makes of the first two. A
-/// browser that hangs is ended.
+/// Shell command that starts the browser. The protocol uses file descriptors 3 and 4, which the shell copies
+/// from its standard input and output. A browser that hangs is stopped.
 const START: &str = "exec 3<&0 4>&1 </dev/null >/dev/null 2>&1; exec timeout 600 \"$@\"";
 
 const AUDIT: &str = include_str!("audit.js");
 
-/// How a page is looked at.
+/// Viewport and color scheme of a page.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
-    /// In CSS pixels.
+    /// Width in CSS pixels.
     pub(super) width: u32,
-    /// `light` or `dark`.
+    /// Color scheme, `light` or `dark`.
     pub(super) scheme: &'static str,
 }
 
-/// A phone and a desk, by day and by night.
+/// Views of a phone and a desktop, each in light and dark.
 pub(super) const VIEWS: [View; 4] = [
     View { width: 390, scheme: "light" },
     View { width: 390, scheme: "dark" },
@@ -32,7 +33,7 @@ pub(super) const VIEWS: [View; 4] = [
     View { width: 1440, scheme: "dark" },
 ];
 
-/// A browser with one page.
+/// Browser with one page.
 pub(super) struct Chromium {
     child: Child,
     input: ChildStdin,
@@ -40,13 +41,13 @@ pub(super) struct Chromium {
     calls: u64,
     session: String,
     runs_scripts: bool,
-    /// What it said since the page was opened last.
+    /// Events since the page was opened last.
     events: Vec<Value>,
     _profile: TempDir,
 }
 
 impl Chromium {
-    /// `None`, said loudly, where there is no browser.
+    /// Starts a browser. `None`, with a notice, if there is none.
     pub(super) fn start() -> Option<Self> {
         let is_there = |name: &&&str| {
             let asked = "command -v timeout && command -v \"$0\"";
@@ -89,7 +90,7 @@ impl Chromium {
         Some(browser)
     }
 
-    /// Opens a page and says what is wrong with it: in the console, asked of a network, or to be seen.
+    /// Opens a page and returns its faults: console messages, network requests, and visible faults.
     pub(super) fn faults(&mut self, page: &Path, view: View) -> Vec<String> {
         self.open(page, view);
         let decoration = [Hue::Grid.light(), Hue::Shade.light()];
@@ -114,7 +115,7 @@ impl Chromium {
         self.wait_for("Page.loadEventFired");
     }
 
-    /// The value of an expression, or of what it promises.
+    /// Returns the value of an expression; a promise is awaited.
     pub(super) fn evaluate(&mut self, expression: &str) -> Value {
         let asked = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
         let answer = self.call("Runtime.evaluate", asked);
@@ -122,14 +123,15 @@ impl Chromium {
         answer["result"]["value"].clone()
     }
 
-    /// With or without the scripts of the pages to be opened.
+    /// Enables or disables the scripts of pages that are opened later.
     pub(super) fn run_scripts(&mut self, runs: bool) {
         self.call("Emulation.setScriptExecutionDisabled", json!({ "value": !runs }));
         self.runs_scripts = runs;
     }
 
-    /// A mouse event at a place of the window, in CSS pixels: `mouseMoved`, `mousePressed` or `mouseReleased`.
-    /// `clicks` is 2 for the second click of a double click, 0 for a mouse whose button is up.
+    /// Sends a mouse event at a position in the window, in CSS pixels: `mouseMoved`, `mousePressed` or
+    /// `mouseReleased`. `clicks` is 2 for the second click of a double click, and 0 while no button is
+    /// pressed.
     pub(super) fn mouse(&mut self, kind: &str, at: [f64; 2], clicks: u32) {
         let held = u32::from(kind != "mouseReleased");
         let button = if kind == "mouseMoved" && clicks == 0 { "none" } else { "left" };
@@ -140,7 +142,7 @@ impl Chromium {
         );
     }
 
-    /// A key, down and up.
+    /// Presses and releases a key.
     pub(super) fn press(&mut self, key: &str) {
         let text = if key == "Enter" { "\r" } else { key };
         self.call(
@@ -151,13 +153,13 @@ impl Chromium {
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key, "code": key }));
     }
 
-    /// Where what a page's buttons save is put.
+    /// Sets the folder for files that a page's buttons save.
     pub(super) fn download_to(&mut self, folder: &Path) {
         let asked = json!({ "behavior": "allow", "downloadPath": folder, "eventsEnabled": true });
         self.call("Browser.setDownloadBehavior", asked);
     }
 
-    /// Waits until a download has come to its end.
+    /// Waits until a download is complete.
     pub(super) fn wait_for_download(&mut self) {
         loop {
             let event = self.wait_for("Browser.downloadProgress");
@@ -188,7 +190,7 @@ impl Chromium {
         }
     }
 
-    /// The next event of a name; those that were kept count.
+    /// Returns the next event of a name, including stored ones.
     fn wait_for(&mut self, method: &str) -> Value {
         if let Some(at) = self.events.iter().position(|event| event["method"] == method) {
             return self.events.remove(at);
@@ -226,7 +228,7 @@ fn address(page: &Path) -> String {
     format!("file://{path}")
 }
 
-/// What an event says against a page, if it does.
+/// Returns the fault of a page that an event reports; `None` if it reports none.
 fn said(event: &Value, page: &Path) -> Option<String> {
     let params = &event["params"];
     match event["method"].as_str()? {

@@ -1,9 +1,10 @@
-//! Plots and tables under the hand: zoom, values under the pointer, legends, sorting. With real events of a mouse.
+//! Tests of interactive plots and tables: zoom, values at the pointer, legends, sorting. They use real mouse
+//! events.
 
 use super::chromium::{Chromium, VIEWS, View};
 use std::path::Path;
 
-/// The plots of a page that respond, on a phone and at a desk.
+/// Tests the interactive plots of a page, on a phone and on a desktop.
 pub(super) fn try_all(browser: &mut Chromium, page: &Path) {
     for view in [VIEWS[0], VIEWS[2]] {
         browser.open(page, view);
@@ -26,7 +27,7 @@ pub(super) fn try_all(browser: &mut Chromium, page: &Path) {
     }
 }
 
-/// A drag across the middle shows a part, a double click the whole; the pointer shows values.
+/// Tests that a drag across the middle zooms in, a double click zooms out, and the pointer shows values.
 fn hover_and_zoom(browser: &mut Chromium, id: &str, place: &str) {
     let find = format!(
         "(() => {{ const over = document.getElementById('{id}').querySelector('.u-over');
@@ -42,7 +43,7 @@ fn hover_and_zoom(browser: &mut Chromium, id: &str, place: &str) {
     let span = |browser: &mut Chromium| browser.evaluate(&span).as_f64().unwrap();
     let whole = span(browser);
 
-    // Somewhere along the plot a series is near enough to have a value.
+    // Somewhere along the plot a series is near enough to the pointer to show a value.
     let shown = format!(
         "(() => {{ const box = document.getElementById('{id}').querySelector('.values');
             const [it, of] = [box, document.documentElement].map((element) => element.getBoundingClientRect());
@@ -74,7 +75,7 @@ fn hover_and_zoom(browser: &mut Chromium, id: &str, place: &str) {
     assert!((again / whole - 1.0).abs() < 1e-9, "{place}: a double click leaves {again} of {whole}");
 }
 
-/// The first entry of a legend takes its series away, and brings it back.
+/// Tests that the first entry of a legend hides its series and shows it again.
 fn toggle(browser: &mut Chromium, id: &str, place: &str) {
     let press = format!(
         "(() => {{ const figure = document.getElementById('{id}');
@@ -90,7 +91,7 @@ fn toggle(browser: &mut Chromium, id: &str, place: &str) {
     assert_eq!(found, serde_json::json!([true, "false", true, "true"]), "{place}");
 }
 
-/// Every entry leads to its section; at a desk the contents stay in sight.
+/// Tests that every entry of the contents leads to its section; on a desktop the contents stay visible.
 fn contents(browser: &mut Chromium, view: View) {
     let found = browser.evaluate(
         "(() => { const contents = document.querySelector('nav.contents');
@@ -105,7 +106,8 @@ fn contents(browser: &mut Chromium, view: View) {
     assert!(view.width < 1000 || found[2] == true, "the contents have left the window: {found}");
 }
 
-/// A click on a heading sorts by its column, another one the other way; the Enter key does the same.
+/// Tests that a click on a heading sorts by its column and another click reverses the order; the Enter key
+/// does the same.
 pub(super) fn sort(browser: &mut Chromium, page: &Path) {
     browser.open(page, VIEWS[2]);
     let found = browser.evaluate(

@@ -1,5 +1,6 @@
-//! Reports in a real browser: nothing in the console, nothing asked of a network, nothing that overflows or cannot be
-//! read, on a phone and at a desk, in light and in dark. Skipped loudly where there is no Chromium.
+//! Tests of reports in a real browser: no console messages, no network requests, nothing that overflows or is
+//! illegible, on a phone and on a desktop, in light and in dark. Skipped with a notice if there is no
+//! Chromium.
 
 mod chromium;
 mod instruments;
@@ -10,7 +11,8 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Runs the program into a new folder below `scratch`, whose report comes out of its other files to the byte.
+/// Runs the program into a new folder below `scratch`, and checks that the report can be made again from the
+/// other files to the byte.
 fn made(scratch: &TempDir, name: &str, arguments: &[&str]) -> PathBuf {
     let out = scratch.path().join(name);
     let output = trainer(&[arguments, &["--quiet", "--out", out.to_str().unwrap()]].concat());
@@ -23,12 +25,12 @@ fn made(scratch: &TempDir, name: &str, arguments: &[&str]) -> PathBuf {
     out
 }
 
-/// Looks at a page in every view.
+/// Checks a page in every view.
 fn look_at(browser: &mut Chromium, page: &Path) {
     look_twice_at(browser, page, |_| ());
 }
 
-/// Looks at a page in every view, and then once more at something of it.
+/// Checks a page in every view, and then runs a further check on it.
 fn look_twice_at(browser: &mut Chromium, page: &Path, look: impl Fn(&mut Chromium)) {
     let mut faults = Vec::new();
     for view in VIEWS {
@@ -38,8 +40,8 @@ fn look_twice_at(browser: &mut Chromium, page: &Path, look: impl Fn(&mut Chromiu
     assert!(faults.is_empty(), "{}:\n{}", page.display(), faults.join("\n"));
 }
 
-/// What the plots of a page save: the CSV is the page's, the SVG is sound in the browser by itself, and the PNG is an
-/// image of some size.
+/// Tests the files that the plots of a page save: the CSV equals the page's data, the browser displays the
+/// SVG without faults, and the PNG is an image of plausible size.
 fn save(browser: &mut Chromium, page: &Path, least: usize) {
     let scratch = tempfile::tempdir().unwrap();
     browser.open(page, VIEWS[0]);
@@ -51,7 +53,7 @@ fn save(browser: &mut Chromium, page: &Path, least: usize) {
     browser.download_to(scratch.path());
     let mut pictures = Vec::new();
     for (id, shown) in &figures {
-        // A page may save ten files before a person has to allow more.
+        // Chromium asks for permission after ten files from one page.
         browser.open(page, VIEWS[0]);
         let [svg, png, csv] = ["svg", "png", "csv"].map(|kind| {
             browser.evaluate(&format!(
@@ -77,7 +79,8 @@ fn save(browser: &mut Chromium, page: &Path, least: usize) {
     }
 }
 
-/// The page without its scripts: nothing wrong with it, every plot drawn, and no button that does nothing.
+/// Tests a page without its scripts: it has no faults, every plot is drawn, and there is no button without a
+/// function.
 fn without_scripts(browser: &mut Chromium, page: &Path) {
     browser.run_scripts(false);
     look_twice_at(browser, page, |browser| {
@@ -90,7 +93,7 @@ fn without_scripts(browser: &mut Chromium, page: &Path) {
     browser.run_scripts(true);
 }
 
-/// Makes a run and looks at its report, which has so many plots or more.
+/// Makes a run and checks its report, which has at least this number of plots.
 fn report_of(arguments: &[&str], plots: usize) {
     let scratch = tempfile::tempdir().unwrap();
     let page = made(&scratch, "run", arguments).join("report.html");
@@ -147,7 +150,7 @@ fn the_report_of_trials() {
     report_of(&[&["configs/trials-quick.toml"], crate::documents::FEW_TRIALS].concat(), 1);
 }
 
-/// A sweep with a run that fails, and its runs beside another one.
+/// Tests a sweep with a run that fails, and a comparison of its runs with another one.
 #[test]
 fn the_tables_of_runs() {
     let scratch = tempfile::tempdir().unwrap();
@@ -168,7 +171,8 @@ fn the_tables_of_runs() {
     instruments::sort(&mut browser, &table.join("report.html"));
 }
 
-/// A fleet of a thousand cases: the answers for three simulated systems, repeated with errors and closures apart.
+/// Creates a fleet of a thousand cases: the answers for three simulated systems, repeated with other errors
+/// and closures.
 fn fleet_of_a_thousand(scratch: &Path) -> PathBuf {
     let (cases, answers) = (scratch.join("cases"), scratch.join("answers"));
     let friction = "name = \"arm\"\nrecord.rate_hz = 130.0\nrecord.seconds = 8.0\nstart.position = 0.7\nsensor.noise = 5e-4\n\
@@ -234,7 +238,7 @@ fn the_report_of_a_thousand_diagnoses() {
     assert_eq!(browser.evaluate(count), 990);
 }
 
-/// Names as hostile as a file system lets them be, and as long.
+/// Names as hostile and as long as the file system allows.
 #[test]
 fn hostile_names_are_text() {
     let scratch = tempfile::tempdir().unwrap();
@@ -243,7 +247,7 @@ fn hostile_names_are_text() {
     std::fs::copy(root().join("experiments/default-record/record.csv"), &record).unwrap();
     let config = |base: &str| {
         let config = scratch.path().join(format!("{evil}-{base}"));
-        // A string of JSON is one of TOML.
+        // A JSON string is a TOML string.
         let text = |path: &Path| serde_json::to_string(path.to_str().unwrap()).unwrap();
         let base = text(&root().join("configs").join(base));
         let name = text(Path::new(evil));
@@ -268,7 +272,7 @@ fn hostile_names_are_text() {
     save(&mut browser, &run.join("report.html"), 5);
 }
 
-/// A page with one fault of each kind: what was not found here would not be found in a report.
+/// Tests a page with one fault of each kind, so that the checks above are known to find them.
 #[test]
 fn broken_pages_are_seen() {
     let Some(mut browser) = Chromium::start() else { return };

@@ -1,8 +1,9 @@
-//! Fits that go on from anything: shared by the fuzzer and by the test that replays what it found.
+//! Fuzzing of fits that resume from arbitrary states: shared by the fuzzer and by the test that replays its
+//! findings.
 //!
-//! What is fed is sealed as a checkpoint first, so that the fuzzer gets past the digest, to who reads what is
-//! behind it. A fit either refuses a state or goes on from exactly that one, within its budget; and one
-//! flipped bit of the sealed file is noticed, whatever it holds.
+//! The input is first sealed as a checkpoint, so that the fuzzer gets past the digest to the code that reads
+//! the state. A fit either refuses a state or resumes from exactly that state within its budget. One flipped
+//! bit of the sealed file is detected, whatever its content.
 
 use envelope::Envelope;
 use estimator::{Cancel, Checkpoints, Entry, Estimator, FitContext, FitError, Silent};
@@ -12,10 +13,10 @@ use settings::{Document, Resolved, Section};
 use std::cell::RefCell;
 use std::sync::OnceLock;
 
-/// Steps that a fit may take in all.
+/// Most steps of a fit.
 const MOST_STEPS: u64 = 3;
 
-/// The smallest of everything that has a size; an estimator takes of these what it declares.
+/// Smallest values of all settings that have a size; each estimator uses those that it declares.
 const SMALL: [(&str, &str); 7] = [
     ("hidden", "[2]"),
     ("collocation_points", "2"),
@@ -26,7 +27,7 @@ const SMALL: [(&str, &str); 7] = [
     ("peaks", "[5, 8]"),
 ];
 
-/// A state to begin from, and the states that are kept meanwhile.
+/// Storage with a state to resume from and the states stored during the fit.
 struct Place<'a> {
     latest: &'a [u8],
     kept: RefCell<Vec<Vec<u8>>>,
@@ -48,18 +49,18 @@ impl Checkpoints for Place<'_> {
     }
 }
 
-/// The state of a fit in progress: which of the estimators is asked for in the first byte, the state in the others.
+/// Resumes a fit in progress: the first byte selects the estimator, and the other bytes are the state.
 pub(crate) fn checkpoint(data: &[u8], estimators: &[Entry]) {
     let Some((first, state)) = data.split_first() else { return };
     sealed(state);
     let estimator = small(&estimators[usize::from(*first) % estimators.len()]);
     let Some(kept) = go_on(&*estimator, state) else { return };
-    // One state may be written in more than one way, what a fit writes is written in one.
+    // A state may have several encodings, but a fit always writes the same one.
     let [first, ..] = &kept[..] else { panic!("a fit that goes on keeps what it goes on from") };
     assert_eq!(go_on(&*estimator, first).as_ref(), Some(&kept), "the same state, another way on");
 }
 
-/// What is sealed comes back, and with a bit flipped it does not.
+/// Checks that a sealed content can be read again, and that it cannot with a flipped bit.
 fn sealed(content: &[u8]) {
     static PLACE: OnceLock<Scratch> = OnceLock::new();
     let folder = RunFolder::open(PLACE.get_or_init(|| Scratch::new().unwrap()).path());
@@ -84,7 +85,7 @@ fn small(entry: &Entry) -> Box<dyn Estimator> {
     (entry.build)(&Resolved::new(&document, &section).unwrap()).unwrap()
 }
 
-/// Goes on from a state: what was kept on the way, or `None` where it was refused.
+/// Resumes from a state and returns the states stored on the way; `None` if the state was refused.
 fn go_on(estimator: &dyn Estimator, state: &[u8]) -> Option<Vec<Vec<u8>>> {
     let times: Vec<f64> = (0..6).map(f64::from).collect();
     let logs = times.iter().map(|time| -0.1 * time - 0.01 * (time % 2.0)).collect();
@@ -97,7 +98,7 @@ fn go_on(estimator: &dyn Estimator, state: &[u8]) -> Option<Vec<Vec<u8>>> {
             assert!(place.kept.borrow().is_empty(), "refused after it was taken: {problem}");
             None
         }
-        // The numbers may be any: where they lead to no finite loss, that is what the fit says.
+        // The numbers are arbitrary: if they lead to a loss that is not finite, the fit reports that.
         Err(_) => Some(place.kept.into_inner()),
         Ok(estimate) => {
             assert!(estimate.steps <= MOST_STEPS, "{} steps of {MOST_STEPS}", estimate.steps);

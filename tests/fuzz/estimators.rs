@@ -1,5 +1,5 @@
-//! Estimators that do without burn, which takes an hour to build with a fuzzer's instruments; configurations
-//! differ from one estimator to the next in declared keys alone.
+//! Estimators without burn, which takes an hour to build with a fuzzer's instrumentation. Configurations of
+//! the others differ only in declared keys.
 
 pub(crate) const ESTIMATORS: &[estimator::Entry] = &[
     estimator_baseline::ENTRY,

@@ -1,7 +1,7 @@
-//! What is fed with anything: shared by the fuzzer and by the test that replays what it found.
+//! Fuzzing targets: shared by the fuzzer and by the test that replays its findings.
 //!
-//! Beyond not panicking, what is read has to hold to itself: a resolved configuration resolves to itself, and a
-//! record that is taken has a length.
+//! Besides not panicking, results have to be consistent: a resolved configuration resolves to itself, and an
+//! accepted record has a length.
 
 use envelope::{PaperPipeline, RecommendedPipeline};
 use estimator::Entry;
@@ -15,7 +15,7 @@ use trials::TrialPlan;
 
 const CLASSICAL: &[&str] = &["ols", "qr"];
 
-/// Lines that part an input into texts.
+/// Lines that separate the texts of an input.
 const BETWEEN: &str = "\n===\n";
 
 type Task = (&'static str, fn(&Document, &[Entry]) -> Result<Resolved, SettingsError>);
@@ -41,7 +41,7 @@ fn every_task(document: &Document, registry: &[Entry]) {
     }
 }
 
-/// A configuration of every task.
+/// Resolves a configuration for every task.
 pub(crate) fn configuration(data: &[u8], registry: &[Entry]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     if let Ok(document) = Document::parse("fuzz.toml", text) {
@@ -49,7 +49,7 @@ pub(crate) fn configuration(data: &[u8], registry: &[Entry]) {
     }
 }
 
-/// A configuration, one that it may stand on, and overrides, one a line.
+/// Resolves a configuration with a base file and overrides, one per line.
 pub(crate) fn overrides(data: &[u8], registry: &[Entry]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let mut parts = text.split(BETWEEN);
@@ -63,7 +63,7 @@ pub(crate) fn overrides(data: &[u8], registry: &[Entry]) {
     every_task(&document, registry);
 }
 
-/// A record file with columns, in each quantity.
+/// Reads a record file with columns, for each quantity.
 pub(crate) fn csv(data: &[u8]) {
     let (first, rest) = data.split_first().unwrap_or((&0, &[]));
     let quantity = match first % 3 {
@@ -79,7 +79,7 @@ pub(crate) fn csv(data: &[u8]) {
     );
 }
 
-/// A record file of the other format.
+/// Reads a record file of the host-log format.
 pub(crate) fn host_log(data: &[u8]) {
     record(data, &ReadOptions { format: Format::HostLog, ..ReadOptions::default() });
 }
@@ -90,7 +90,7 @@ fn record(data: &[u8], options: &ReadOptions) {
     for choice in [ClockChoice::Host, ClockChoice::UniformIndex, ClockChoice::Auto] {
         let Ok(clock) = Clock::new(&record, choice) else { continue };
         let _ = source.statements.contradictions(record.len(), &clock);
-        // A grid of millions of points says no more than one of thousands.
+        // A grid of millions of points tests no more than one of thousands.
         let span = clock.times_s.last().zip(clock.times_s.first()).map_or(0.0, |(last, first)| last - first);
         let paper = PaperPipeline {
             interpolation_step_s: span / 2000.0,
@@ -106,7 +106,7 @@ fn record(data: &[u8], options: &ReadOptions) {
     }
 }
 
-/// The nominal simulator of a diagnosis.
+/// Reads the nominal simulator of a diagnosis.
 pub(crate) fn nominal(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     if let Ok(document) = Document::parse("nominal.toml", text) {
@@ -114,7 +114,7 @@ pub(crate) fn nominal(data: &[u8]) {
     }
 }
 
-/// The files of a finished run, on their way to a report.
+/// Reads the files of a finished run, as for a report.
 pub(crate) fn results(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let mut parts = text.split(BETWEEN).map(str::to_owned);

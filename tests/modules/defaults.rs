@@ -1,10 +1,10 @@
-//! Numbers that stand in for what is not there: each says why it is right.
+//! Checks numeric defaults for absent values: each needs a comment with its reason.
 
 use super::crates;
 use super::source::{code_only, without_tests};
 use crate::documents::files;
 
-/// Crates in which a default of any type stands for a number more often than not.
+/// Crates in which a default of any type is usually a number.
 const NUMERIC: &[&str] = &[
     "baseline",
     "bayesian",
@@ -38,8 +38,8 @@ const NUMERIC: &[&str] = &[
     "workflow",
 ];
 
-/// Lines, from 1, with a zero in place of what is not there and no comment on the line or the one above. Of crates that
-/// hold texts and lists more often than numbers, `any_default` is not set.
+/// Returns the lines, from 1, with a zero as default for an absent value and without a comment on the line or
+/// the one above. `any_default` is not set for crates whose defaults are mostly texts and lists.
 fn without_reason(text: &str, any_default: bool) -> Vec<usize> {
     let code = without_tests(&code_only(text));
     let (said, written): (Vec<&str>, Vec<&str>) = (text.lines().collect(), code.lines().collect());
@@ -53,7 +53,7 @@ fn without_reason(text: &str, any_default: bool) -> Vec<usize> {
         after(line, "unwrap_or(")
             || any_default && (line.contains("unwrap_or_default()") || after(line, "map_or("))
     };
-    // A comment goes on to the end of its line, where a string leaves code behind it.
+    // A comment extends to the end of its line, whereas code follows a string.
     let explains = |at: usize| {
         said[at].match_indices("// ").any(|(place, _)| {
             let before = said[at][..place].chars();
@@ -67,7 +67,7 @@ fn without_reason(text: &str, any_default: bool) -> Vec<usize> {
         .collect()
 }
 
-/// The same of a file of a crate.
+/// Returns the same for a file of a crate.
 pub(super) fn zeros_of(crate_name: &str, text: &str) -> Vec<usize> {
     without_reason(text, NUMERIC.contains(&crate_name))
 }

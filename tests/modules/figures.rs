@@ -1,4 +1,5 @@
-//! Figures of every crate, counted from its sources: code, tests, documents, circles, long functions, zeros without a reason.
+//! Figures of every crate, counted from its sources: code, tests, documentation, cycles, long functions,
+//! zeros without a reason.
 //!
 //!     cargo test -p trainer --test acceptance modules::figures -- --nocapture
 
@@ -11,26 +12,26 @@ use super::{LONGEST, crates};
 use crate::documents::files;
 use std::path::Path;
 
-/// Lines of sources by what they hold; a line that holds nothing but a comment or a brace's blank counts for neither.
+/// Lines of sources by content. A line with only a comment or blanks counts neither as code nor as tests.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 struct Lines {
-    /// Code that is not compiled for tests only.
+    /// Code that is compiled outside of tests.
     code: usize,
     /// Code of tests.
     tests: usize,
-    /// `///` and `//!`, those of tests left out.
+    /// Lines with `///` and `//!`, except those of tests.
     documents: usize,
 }
 
 impl Lines {
-    /// Of a file's text; a file of tests has nothing else.
+    /// Counts the lines of a file's text; a file of tests has only test code.
     fn of(text: &str, is_test: bool) -> Self {
         let written = code_only(text);
         let kept = if is_test { String::new() } else { without_tests(&written) };
         let filled = |code: &str| code.lines().filter(|line| !line.trim().is_empty()).count();
         let is_document = |line: &&str| ["///", "//!"].iter().any(|mark| line.trim_start().starts_with(mark));
         let code = filled(&kept);
-        // Where tests begin, documents end: they stand last in a file.
+        // Documentation is counted up to the tests, which come last in a file.
         let end = text.find("#[cfg(test)]\nmod tests {").unwrap_or(text.len());
         let documents = if is_test { 0 } else { text[..end].lines().filter(is_document).count() };
         Self { code, tests: filled(&written) - code, documents }
@@ -44,22 +45,22 @@ impl Lines {
         }
     }
 
-    /// Lines of documents for a hundred of code.
+    /// Returns the lines of documentation per hundred lines of code.
     fn density(self) -> f64 {
         100.0 * self.documents as f64 / self.code.max(1) as f64
     }
 }
 
-/// What is counted of a crate.
+/// Figures of a crate.
 struct Figures {
     lines: Lines,
-    /// Modules that are part of a circle.
+    /// Number of modules that are part of a cycle.
     circular: usize,
-    /// Functions of more than [`LONGEST`] lines.
+    /// Number of functions with more than [`LONGEST`] lines.
     long: usize,
-    /// The longest function and its lines.
+    /// Longest function and its number of lines.
     longest: (String, usize),
-    /// Numbers that stand in for what is not there, without a reason.
+    /// Number of numeric defaults for absent values without a reason.
     zeros: usize,
 }
 

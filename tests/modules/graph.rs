@@ -1,18 +1,21 @@
-//! The graph of a crate's modules, from its sources: an edge where the code of one names something of another.
+//! Graph of a crate's modules, from its sources: an edge means that the code of one module names an item of
+//! another.
 //!
-//! A re-export (`pub use`) is no edge, and a name that goes through one counts for where it leads.
+//! A re-export (`pub use`) is no edge, and a name that is used through one counts for the module that it
+//! leads to.
 
 use super::source::{code_only, functions, without_tests};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// A module's path within its crate, empty for the root.
+/// Path of a module within its crate; empty for the root.
 type Name = Vec<String>;
 
-/// One module with what its file says.
+/// Module, as parsed from its file.
 struct Module {
     code: String,
-    /// What a name stands for that is imported: the module that it was said in is where its path starts.
+    /// Imported names with the paths that they stand for; a path without `crate`, `self` or `super` starts in
+    /// this module.
     aliases: BTreeMap<String, Name>,
     /// Modules whose names are all imported.
     globs: Vec<Name>,
@@ -20,7 +23,7 @@ struct Module {
     imports: Vec<Name>,
 }
 
-/// The modules of a crate and which of them name which.
+/// Modules of a crate, from which the edges follow.
 pub(super) struct Graph {
     modules: BTreeMap<Name, Module>,
 }
@@ -33,14 +36,14 @@ impl Graph {
         Self { modules }
     }
 
-    /// Every function with its module and its number of lines.
+    /// Returns every function with its module and its number of lines.
     pub(super) fn functions(&self) -> impl Iterator<Item = (String, String, usize)> {
         self.modules.iter().flat_map(|(name, module)| {
             functions(&module.code).into_iter().map(|(function, lines)| (shown(name), function, lines))
         })
     }
 
-    /// Groups of modules of which each reaches each other, as names in the order of the alphabet.
+    /// Returns groups of modules that all reach each other, with names in alphabetical order.
     pub(super) fn circles(&self) -> Vec<Vec<String>> {
         let edges: BTreeMap<&Name, BTreeSet<Name>> =
             self.modules.keys().map(|module| (module, self.named_by(module))).collect();
@@ -61,7 +64,7 @@ impl Graph {
         groups.into_iter().collect()
     }
 
-    /// Modules that the code of one names, itself left out.
+    /// Returns the modules that the code of one names, except itself.
     fn named_by(&self, module: &Name) -> BTreeSet<Name> {
         let own = &self.modules[module];
         let imports = own.imports.iter().map(|path| self.owner(path, 0));
@@ -72,7 +75,7 @@ impl Graph {
         imports.chain(paths).filter(|other| other != module).collect()
     }
 
-    /// A path from the crate's root on; `None` where its first word is no module of this crate.
+    /// Returns a path from the crate's root; `None` if its first word is not a module of this crate.
     fn absolute(&self, module: &Name, path: &[String]) -> Option<Name> {
         let first = path.first()?;
         let child: Name = module.iter().chain([first]).cloned().collect();
@@ -81,11 +84,11 @@ impl Graph {
             return Some(from_root(module, path));
         }
         let alias = self.modules[module].aliases.get(first)?;
-        // Only what stands for a module starts a path to something else.
+        // Only an alias of a module can start a path to another item.
         self.modules.contains_key(alias).then(|| alias.iter().chain(&path[1..]).cloned().collect())
     }
 
-    /// The module that has what a path leads to.
+    /// Returns the module that owns the item of a path.
     fn owner(&self, path: &[String], depth: usize) -> Name {
         let known = (0..=path.len()).rev().find(|&count| self.modules.contains_key(&path[..count]));
         let count = known.unwrap_or(0);
@@ -105,7 +108,7 @@ fn shown(name: &Name) -> String {
     if name.is_empty() { "(root)".to_owned() } else { name.join("::") }
 }
 
-/// Whether code has an item of this name.
+/// Returns `true` if code defines an item of this name.
 fn defines(code: &str, name: &str) -> bool {
     ["fn ", "struct ", "enum ", "trait ", "const ", "static ", "type "].iter().any(|kind| {
         let item = format!("{kind}{name}");
@@ -151,7 +154,7 @@ fn read_module(file: &Path, folder: &Path, name: &Name, modules: &mut BTreeMap<N
     modules.insert(name.clone(), module);
 }
 
-/// Names of the modules that have files of their own.
+/// Returns the names of the modules that have their own files.
 fn children(code: &str) -> Vec<String> {
     let words: Vec<&str> = code.split_whitespace().collect();
     let declared =
@@ -159,7 +162,7 @@ fn children(code: &str) -> Vec<String> {
     declared.map(str::to_owned).collect()
 }
 
-/// Places of `use` items, and whether each is a re-export.
+/// Returns the positions of `use` items, each with `true` for a re-export.
 fn use_items(code: &str) -> Vec<(usize, usize, bool)> {
     let mut found = Vec::new();
     for (at, _) in code.match_indices("use ") {
@@ -176,7 +179,7 @@ fn use_items(code: &str) -> Vec<(usize, usize, bool)> {
     found
 }
 
-/// A tree of imports as paths with the names that they get.
+/// Converts a tree of imports to paths with the names that they get.
 fn tree(text: &str) -> Vec<(Name, String)> {
     let text = text.trim();
     if let Some(open) = text.find('{') {
@@ -201,7 +204,7 @@ fn tree(text: &str) -> Vec<(Name, String)> {
     vec![(words, if alias.is_empty() { last } else { alias.trim().to_owned() })]
 }
 
-/// The parts of a list, by the commas outside of inner braces.
+/// Splits a list at the commas outside of inner braces.
 fn parts(text: &str) -> Vec<String> {
     let (mut parts, mut depth) = (vec![String::new()], 0);
     for letter in text.chars() {
@@ -219,7 +222,8 @@ fn parts(text: &str) -> Vec<String> {
     parts.into_iter().filter(|part| !part.trim().is_empty()).collect()
 }
 
-/// A path from the crate's root on, `crate`, `self` and `super` taken out; other first words are children.
+/// Returns a path from the crate's root with `crate`, `self` and `super` resolved; other first words are
+/// children.
 fn from_root(module: &Name, path: &[String]) -> Name {
     let mut place = module.clone();
     let mut words = path.iter();
@@ -238,7 +242,7 @@ fn from_root(module: &Name, path: &[String]) -> Name {
     place
 }
 
-/// Every path of two words or more in the code.
+/// Returns every path of two or more words in the code.
 fn paths_in(code: &str) -> BTreeSet<Name> {
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == ':' || letter == '$';
     let words = code.split(|letter| !is_part(letter)).filter(|word| word.contains("::"));

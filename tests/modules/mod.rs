@@ -1,4 +1,4 @@
-//! The rooms of each crate: no circle among its modules, no function that goes on for pages, no zero without a reason.
+//! Checks of the modules of each crate: no cycles, no very long functions, no zeros without a reason.
 
 mod defaults;
 mod figures;
@@ -12,10 +12,10 @@ use known::LONG;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Lines of a function, from `fn` to its closing brace, beyond which it needs a reason in [`LONG`].
+/// Most lines of a function, from `fn` to its closing brace, without a reason in [`LONG`].
 const LONGEST: usize = 60;
 
-/// Lines beyond which no reason helps.
+/// Most lines of a function with a reason.
 const FAR_TOO_LONG: usize = 100;
 
 #[test]
@@ -54,7 +54,7 @@ fn functions_are_short_or_have_a_reason() {
     assert!(reasons.is_empty(), "short by now, so no longer to be listed: {reasons:?}");
 }
 
-/// Writes a crate of some files and gives the circles among its modules.
+/// Writes a crate of some files and returns the cycles among its modules.
 fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -93,7 +93,7 @@ fn what_is_only_said_makes_no_circle() {
         ),
     ];
     assert!(circles_of(&said).is_empty());
-    // A re-export is no use, and a name that goes through one is its owner's.
+    // A re-export is no use, and a name that is used through one counts for its owner.
     let through = [
         ("lib.rs", "mod a; mod b; mod c;"),
         ("a.rs", "pub use crate::b::B;"),
@@ -116,7 +116,7 @@ fn lines_of_a_function_are_counted_without_its_tests() {
     assert_eq!(source::functions(&code), [("long".to_owned(), 5)]);
 }
 
-/// Roots of the workspace's crates by name.
+/// Returns the roots of the workspace's crates by name.
 fn crates() -> BTreeMap<String, PathBuf> {
     let mut found = BTreeMap::new();
     for folder in ["crates", "crates/estimators"] {

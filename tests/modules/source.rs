@@ -1,4 +1,4 @@
-//! The text of a Rust source file as a scan needs it: no comments, no literals, no tests.
+//! Text of a Rust source file for scanning: without comments, literals and tests.
 
 /// Replaces comments, strings and characters by blanks; line breaks stay.
 pub(super) fn code_only(text: &str) -> String {
@@ -18,7 +18,7 @@ pub(super) fn code_only(text: &str) -> String {
     code
 }
 
-/// Where a comment or a literal that starts here ends.
+/// Returns the end of a comment or a literal that starts here; `None` if none does.
 fn end_of_blank(letters: &[char], at: usize) -> Option<usize> {
     let starts = |pattern: &str| pattern.chars().enumerate().all(|(n, c)| letters.get(at + n) == Some(&c));
     let within_name = at > 0 && (letters[at - 1].is_alphanumeric() || letters[at - 1] == '_');
@@ -36,7 +36,7 @@ fn end_of_blank(letters: &[char], at: usize) -> Option<usize> {
     if !within_name && (starts("r\"") || starts("r#") || starts("br\"") || starts("br#")) {
         return after_raw(letters, at);
     }
-    // A character, not a lifetime.
+    // A character literal and not a lifetime.
     if starts("'") && (letters.get(at + 1) == Some(&'\\') || letters.get(at + 2) == Some(&'\'')) {
         let escaped = usize::from(letters.get(at + 1) == Some(&'\\'));
         return Some(after_quote(letters, at + 1 + 2 * escaped, '\''));
@@ -51,7 +51,7 @@ fn after_quote(letters: &[char], mut at: usize, quote: char) -> usize {
     (at + 1).min(letters.len())
 }
 
-/// The end of a raw string; `None` where it is a raw name.
+/// Returns the end of a raw string; `None` for a raw identifier.
 fn after_raw(letters: &[char], at: usize) -> Option<usize> {
     let first = at + usize::from(letters[at] == 'b') + 1;
     let hashes = letters[first..].iter().take_while(|&&letter| letter == '#').count();
@@ -66,7 +66,7 @@ fn after_raw(letters: &[char], at: usize) -> Option<usize> {
     Some(quote + 1 + hashes)
 }
 
-/// Blanks every item under `#[cfg(test)]`.
+/// Replaces every item under `#[cfg(test)]` by blanks.
 pub(super) fn without_tests(code: &str) -> String {
     let mut kept = code.to_owned();
     while let Some(start) = kept.find("#[cfg(test)]") {
@@ -77,7 +77,7 @@ pub(super) fn without_tests(code: &str) -> String {
     kept
 }
 
-/// Where the item from here on ends: after its `;` or its block.
+/// Returns the end of the item that starts here: after its `;` or its block.
 fn end_of_item(code: &str, from: usize) -> usize {
     let mut depth = 0_usize;
     for (at, letter) in code[from..].char_indices() {
@@ -96,7 +96,7 @@ fn end_of_item(code: &str, from: usize) -> usize {
     code.len()
 }
 
-/// Functions with the number of lines from `fn` to the closing brace.
+/// Returns functions with the number of lines from `fn` to the closing brace.
 pub(super) fn functions(code: &str) -> Vec<(String, usize)> {
     let mut found = Vec::new();
     for (at, _) in code.match_indices("fn ") {

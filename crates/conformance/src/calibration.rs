@@ -6,18 +6,20 @@ use rand::RngExt;
 use seed::Seed;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// How evenly the truth fell over the stated posteriors.
+/// Levels of the true decay rate in the stated posteriors, which are uniform if the posteriors are
+/// calibrated.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Calibration {
-    /// The posterior's distribution function at the truth, one number in 0..1 for each envelope, in
-    /// increasing order.
+    /// Values of the posterior's distribution function at the truth, one number in 0..1 per envelope with an
+    /// interval, in increasing order.
     pub levels: Vec<f64>,
-    /// Envelopes that the estimator stated no interval for.
+    /// Number of envelopes that the estimator stated no interval for.
     pub without_interval: u64,
 }
 
 impl Calibration {
-    /// Largest distance between the empirical distribution function of the levels and the uniform one.
+    /// Returns the largest distance between the empirical distribution function of the levels and the uniform
+    /// one.
     #[must_use]
     pub fn deviation(&self) -> f64 {
         let count = self.levels.len() as f64;
@@ -28,8 +30,8 @@ impl Calibration {
         distances.fold(0.0, f64::max)
     }
 
-    /// Half-width of the band that holds the whole empirical distribution function of n uniform levels
-    /// with probability 1 − α, at least: √(ln(2/α)/(2n)).
+    /// Returns the half-width of the band that holds the whole empirical distribution function of n uniform
+    /// levels with probability at least 1 − α: √(ln(2/α)/(2n)).
     ///
     /// Reference: Massart, The Annals of Probability 18 (1990) 1269, for any n.
     #[must_use]
@@ -38,18 +40,18 @@ impl Calibration {
     }
 }
 
-/// Fits `envelopes` simulated envelopes of a population, each with its own number of peaks (12 to 80),
-/// decay rate (0.02 to 2 1/s) and scatter (0.03 to 0.3 on ln A), and asks each stated posterior for its
-/// distribution function at the true rate.
+/// Fits `envelopes` simulated envelopes and evaluates the distribution function of each stated posterior at
+/// the true rate. Each envelope has its own number of peaks (12 to 80), decay rate (0.02 to 2 1/s) and
+/// scatter (0.03 to 0.3 on ln A).
 ///
-/// The levels of a calibrated posterior are uniform. Truths are drawn from a population, not from the
-/// estimator's prior, which is scaled by the data and broad: for the reference posterior of a line with
-/// Gaussian scatter the level is uniform at every single truth, hence over any population.
+/// The levels of a calibrated posterior are uniform. The truths are drawn from a population and not from the
+/// estimator's prior, which is scaled by the data and broad. This is valid here: for the reference posterior
+/// of a line with Gaussian scatter, the level is uniform at every single truth and hence over any population.
 ///
 /// Reference: Talts, Betancourt, Simpson, Vehtari, Gelman, arXiv:1804.06788 (2018).
 ///
 /// # Errors
-/// A sentence where a fit fails.
+/// A sentence, if a fit fails or an interval fits no distribution.
 pub fn calibration(subject: &Subject<'_>, envelopes: u64) -> Result<Calibration, String> {
     let (mut levels, mut without_interval) = (Vec::new(), 0);
     for draw in 0..envelopes {
@@ -73,8 +75,8 @@ pub fn calibration(subject: &Subject<'_>, envelopes: u64) -> Result<Calibration,
     Ok(Calibration { levels, without_interval })
 }
 
-/// The distribution function at `truth` of Student's t about `center`, with the degrees of freedom that
-/// standard error and interval tell.
+/// Returns the distribution function at `truth` of Student's t about `center`. The degrees of freedom follow
+/// from standard error and interval.
 pub(crate) fn level(known: &Uncertainty, center: f64, truth: f64) -> Option<f64> {
     let [low, high] = known.interval_95;
     let quantile = (high - low) / (2.0 * known.std_error);
@@ -82,8 +84,8 @@ pub(crate) fn level(known: &Uncertainty, center: f64, truth: f64) -> Option<f64>
     Some(StudentsT::new(0.0, 1.0, freedom).ok()?.cdf((truth - center) / known.std_error))
 }
 
-/// The degrees of freedom, 1 to 10⁷, at which Student's t has this 97.5 % quantile: by bisection, the
-/// quantile falling with them.
+/// Returns the degrees of freedom, 1 to 10⁷, at which Student's t has this 97.5 % quantile: by bisection,
+/// since the quantile falls with the degrees of freedom.
 fn degrees_of_freedom(quantile: f64) -> Option<f64> {
     let quantile_at = |freedom: f64| Some(StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975));
     let (mut low, mut high) = (0.0_f64, 7.0_f64 * std::f64::consts::LN_10);

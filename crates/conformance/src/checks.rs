@@ -1,4 +1,4 @@
-//! The checks.
+//! Checks of the battery.
 
 use crate::envelopes::{bent, exponential, scattered};
 use crate::line::least_squares;
@@ -8,7 +8,7 @@ use estimator::{Ablation, Entry, Estimand, Estimate, FitError, Reached, Tag};
 use seed::Seed;
 use settings::{Document, Kind, Resolved, Section};
 
-/// Every check, in the order of reading.
+/// Every check, in the order of reports.
 pub const CHECKS: &[Check] = &[
     Check { name: "out_of_range_settings_are_refused_by_name", applies: always, run: ranges },
     Check { name: "the_envelope_is_left_alone", applies: always, run: left_alone },
@@ -65,15 +65,16 @@ fn method(entry: &Entry) -> bool {
     !entry.has(Tag::Null)
 }
 
-/// The paper's bar: largest relative error against least squares.
+/// Bar of the paper: largest relative error against least squares.
 const BAR: f64 = 1e-3;
 
-/// How far an amortized method may be from least squares, in standard errors of that: an error of its own
-/// of this size, independent of the line's, makes its error a tenth larger, √(1 + 0.458²) = 1.1.
+/// Largest distance of an amortized method from least squares, in standard errors of least squares. An error
+/// of this size, independent of the line's, makes the total error a tenth larger: √(1 + 0.458²) = 1.1.
 const AMORTIZED_BAR: f64 = 0.458;
 
-/// How far an amortized method may miss an equivariance, in standard errors of least squares: it looks
-/// until a look moves λ by a hundredth, and the looks that were not taken add up to a few.
+/// Largest violation of an equivariance by an amortized method, in standard errors of least squares. The
+/// method looks at the residuals repeatedly until one look moves λ by less than a hundredth of its stated
+/// error; the omitted looks add up to a few hundredths.
 const AMORTIZED_EQUIVARIANCE: f64 = 0.05;
 
 fn given(envelope: Option<Envelope>) -> Result<Envelope, String> {
@@ -84,13 +85,13 @@ fn fitted(subject: &Subject<'_>, envelope: &Envelope, seed: u64) -> Result<Estim
     subject.fit(envelope, seed, None).map_err(|error| error.to_string())
 }
 
-/// |a/b − 1| at most `bar`.
+/// Checks that |a/b − 1| is at most `bar`.
 fn close(what: &str, found: f64, expected: f64, bar: f64) -> Result<(), String> {
     let off = (found / expected - 1.0).abs();
     if off <= bar { Ok(()) } else { Err(format!("{what}: {found} for {expected}, off by {off:.1e}")) }
 }
 
-/// The relative error that `share` standard errors of the least-squares line are on an envelope.
+/// Returns the relative size of `share` standard errors of the least-squares line on an envelope.
 fn relative(envelope: &Envelope, share: f64) -> f64 {
     let line = least_squares(envelope);
     (share * line.std_error / line.decay_rate).abs()
@@ -123,7 +124,7 @@ fn ranges(subject: &Subject<'_>) -> Result<(), String> {
 fn left_alone(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     let before = envelope.clone();
-    // A few steps touch all that a fit touches.
+    // A few steps run all code that could change the envelope.
     subject.fit_anew(&envelope, 0, Some(2)).map_err(|error| error.to_string())?;
     if envelope == before { Ok(()) } else { Err("the envelope has changed".to_owned()) }
 }
@@ -148,7 +149,7 @@ fn odd(subject: &Subject<'_>) -> Result<(), String> {
     for (name, envelope) in envelopes {
         match subject.fit(&given(envelope)?, 0, None) {
             Ok(estimate) => numbers(name, &estimate)?,
-            // A refusal is an answer; a broken backend is not.
+            // A refusal is a valid answer; a broken backend is not.
             Err(FitError::Backend { problem }) => return Err(format!("{name}: {problem}")),
             Err(_) => {}
         }
@@ -171,7 +172,7 @@ fn numbers(name: &str, estimate: &Estimate) -> Result<(), String> {
     if finite { Ok(()) } else { Err(format!("{name}: not finite: {estimate:?}")) }
 }
 
-/// A fit from scratch beside the one that the other checks go by.
+/// Compares a fit from scratch with the stored one that the other checks use.
 fn same_bits(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     let steps = subject.short();
@@ -183,7 +184,7 @@ fn same_bits(subject: &Subject<'_>) -> Result<(), String> {
     }
 }
 
-/// The whole training, at the seed that the other checks go by.
+/// Compares the whole training at the seed that the other checks use.
 fn pretrained(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     if subject.fit(&envelope, 0, None) == subject.fit_anew(&envelope, 0, None) {
@@ -193,7 +194,7 @@ fn pretrained(subject: &Subject<'_>) -> Result<(), String> {
     }
 }
 
-/// Two seeds may start alike (a drawn expression can be a constant); eight do not.
+/// Two seeds may start alike, since a drawn expression can be a constant; eight seeds do not.
 fn other_way(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     let start = |seed| {
@@ -221,7 +222,7 @@ fn threads(subject: &Subject<'_>) -> Result<(), String> {
     if together == alone.map(Some) { Ok(()) } else { Err("side by side, fits differ".to_owned()) }
 }
 
-/// The bent envelope with other times and logarithms.
+/// Returns the bent envelope with times and logarithms changed.
 fn changed(change: impl Fn(f64, f64) -> (f64, f64)) -> Result<Envelope, String> {
     let envelope = given(bent())?;
     let (times, logs) = envelope
@@ -233,7 +234,7 @@ fn changed(change: impl Fn(f64, f64) -> (f64, f64)) -> Result<Envelope, String> 
     Envelope::new(times, logs, envelope.omega_rad_s()).map_err(|error| error.to_string())
 }
 
-/// How far a trained method may miss an equivariance: the accuracy it trains to, not more.
+/// Largest violation of an equivariance by a trained method: the accuracy that it trains to.
 const EQUIVARIANCE: f64 = 1e-4;
 
 fn louder(subject: &Subject<'_>) -> Result<(), String> {
@@ -259,7 +260,7 @@ fn added(subject: &Subject<'_>) -> Result<(), String> {
     close("λ with 0.1/s added", other.decay_rate, one.decay_rate + 0.1, bar)
 }
 
-/// A start that is read off the data would pass for a training.
+/// A start that is computed from the data could pass for a training.
 fn untrained(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     let truth = least_squares(&envelope).decay_rate;
@@ -276,11 +277,11 @@ fn untrained(subject: &Subject<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Distance from the least-squares slope of an envelope that counts as wrong.
+/// Smallest relative distance from the least-squares slope that counts as wrong.
 const WRONG: f64 = 0.01;
 
-/// Without the part that is said to have learned, the estimator has to miss; where it does not, that part
-/// contributed nothing, and a waiver has to say so.
+/// Checks that the estimator is wrong without its learned part. If it is not, that part contributed nothing,
+/// and a waiver has to say so.
 fn without(subject: &Subject<'_>, ablation: Ablation) -> Result<(), String> {
     let envelope = given(bent())?;
     let truth = least_squares(&envelope).decay_rate;
@@ -291,7 +292,7 @@ fn without(subject: &Subject<'_>, ablation: Ablation) -> Result<(), String> {
             return Err(format!("seed {seed}: {}, yet off by {off:.1e} only", ablation.name()));
         }
         if amortized(subject.entry) {
-            // Every seed is a training.
+            // Each seed needs a training of its own, so that one seed has to do.
             break;
         }
     }
@@ -306,8 +307,8 @@ fn on_noise(subject: &Subject<'_>) -> Result<(), String> {
     without(subject, Ablation::NoiseForInput)
 }
 
-/// An envelope of 69 peaks with every ninth far off its exponential: where least squares and what resists
-/// outliers part.
+/// Returns an envelope of 69 peaks, every ninth far off its exponential, so that least squares and robust
+/// methods differ.
 fn with_outliers() -> Option<Envelope> {
     let clean = exponential(69, 0.0, 0.19)?;
     let off = |(at, log): (usize, &f64)| if at % 9 == 4 { log - 0.02 * at as f64 } else { *log };
@@ -315,8 +316,8 @@ fn with_outliers() -> Option<Envelope> {
     Envelope::new(clean.times_s().to_vec(), logs, clean.omega_rad_s()).ok()
 }
 
-/// Who claims to estimate something else than least squares has to do so somewhere: on a bent envelope or
-/// on one with outliers.
+/// Checks that an estimator with an estimand of its own differs from least squares on a bent envelope or on
+/// one with outliers.
 fn differs(subject: &Subject<'_>) -> Result<(), String> {
     for envelope in [bent(), with_outliers()] {
         let envelope = given(envelope)?;
@@ -328,7 +329,7 @@ fn differs(subject: &Subject<'_>) -> Result<(), String> {
     Err("it equals least squares on a bent envelope and on one with outliers; drop the tag".to_owned())
 }
 
-/// What a fit does not know it does not state: an interval belongs to a solution, not to where a budget ran out.
+/// Checks that an interval is stated only for a converged fit, not for a state in which the budget ran out.
 fn no_interval(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     for steps in [0, 1, 2, 3] {
@@ -351,7 +352,8 @@ fn pure(subject: &Subject<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Eight times the peaks over the same span: the error by √8 smaller, within what twenty draws tell.
+/// Checks that the error falls by √8 with eight times the peaks over the same span, within the scatter of
+/// twenty draws.
 fn falls(subject: &Subject<'_>) -> Result<(), String> {
     const DRAWS: u64 = 20;
     let rate = 0.2;
@@ -392,8 +394,8 @@ fn beats_null(subject: &Subject<'_>) -> Result<(), String> {
     if own < null { Ok(()) } else { Err(format!("squares {own:.3e}, those of a constant {null:.3e}")) }
 }
 
-/// An amortized method is held to the accuracy of its skill and, since every seed is a training, to two
-/// seeds.
+/// Checks the value of λ. An amortized method is held to the accuracy of its training and to two seeds only,
+/// since every seed needs a training.
 fn agrees(subject: &Subject<'_>) -> Result<(), String> {
     let envelope = given(bent())?;
     let truth = least_squares(&envelope).decay_rate;
@@ -408,8 +410,9 @@ fn agrees(subject: &Subject<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Over 200 envelopes of three lengths, its distance from least squares in standard errors: the root of
-/// the mean square is within the bar, which makes its own error a tenth larger than the efficient one.
+/// Checks the distance from least squares, in standard errors, over 200 envelopes of each of three lengths:
+/// its root mean square has to be within the bar, which makes the total error a tenth larger than the
+/// efficient one.
 fn nearly_as_good(subject: &Subject<'_>) -> Result<(), String> {
     for (peaks, rate, scatter) in [(20, 0.5, 0.05), (69, 0.19, 0.1), (250, 0.02, 0.02)] {
         let (mut squares, draws) = (0.0, 200);
@@ -429,7 +432,7 @@ fn nearly_as_good(subject: &Subject<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// How far a prediction at a peak may be from the fitted function there, of ln A: rounding.
+/// Largest difference in ln A between a prediction at a peak and the fitted function there: rounding.
 const PREDICTION: f64 = 1e-9;
 
 fn predictions(subject: &Subject<'_>) -> Result<(), String> {

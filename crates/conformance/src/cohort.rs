@@ -5,24 +5,24 @@ use crate::{Subject, query_times, scattered};
 use rand_distr::{Distribution, Normal};
 use seed::Seed;
 
-/// How often a stated 95 % interval held what it was to hold.
+/// Coverage: count of stated 95 % intervals that hold the true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Coverage {
-    /// Intervals tried.
+    /// Number of intervals tried.
     pub tried: u64,
-    /// Intervals that held the truth.
+    /// Number of intervals that held the truth.
     pub held: u64,
 }
 
 impl Coverage {
-    /// Share of intervals that held the truth.
+    /// Returns the share of intervals that held the truth.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.held as f64 / self.tried as f64
     }
 
-    /// Whether the share lies within `bar` of 95 %, or within three binomial standard errors where that
-    /// is wider: few envelopes know the share poorly.
+    /// Returns `true` if the share lies within `bar` of 95 %, or within three binomial standard errors if
+    /// that is wider, since a few envelopes determine the share poorly.
     #[must_use]
     pub fn is_within(&self, bar: f64) -> bool {
         let standard_error = (0.95 * 0.05 / self.tried as f64).sqrt();
@@ -35,32 +35,32 @@ impl Coverage {
     }
 }
 
-/// What [`coverage`] finds.
+/// Result of [`coverage`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cohort {
-    /// Intervals of λ.
+    /// Coverage of the intervals of λ.
     pub rates: Coverage,
-    /// Predictive intervals of one fresh peak an envelope; none tried where the method states no standard
-    /// deviation of its predictions.
+    /// Coverage of the predictive intervals of one fresh peak per envelope; none tried if the method states
+    /// no standard deviation of its predictions.
     pub fresh_peaks: Coverage,
-    /// Where λ fell in the stated posteriors.
+    /// Levels of the true λ in the stated posteriors.
     pub calibration: Calibration,
 }
 
-/// The normal distribution's quantile at 97.5 %: with 67 degrees of freedom Student's t is 2 % wider, half
-/// a percent of coverage.
+/// Quantile of the normal distribution at 97.5 %. The quantile of Student's t with 67 degrees of freedom is 2
+/// % larger, which is half a percent of coverage.
 const QUANTILE_975: f64 = 1.959_963_984_540_054;
 
-/// Fits simulated envelopes of 69 peaks, λ = 0.19 1/s and a scatter of 0.1 on ln A, a new draw each, and
-/// counts the intervals that hold λ and the predictive intervals that hold a peak drawn afresh, within the
+/// Fits simulated envelopes of 69 peaks with λ = 0.19 1/s and a scatter of 0.1 on ln A, each a new draw.
+/// Counts the intervals that hold λ, and the predictive intervals that hold a freshly drawn peak within the
 /// envelope or a tenth of its length beyond.
 ///
 /// # Errors
-/// A sentence where a fit fails, states no interval of λ, or one that no distribution has.
+/// A sentence, if a fit fails, states no interval of λ, or states one that fits no distribution.
 pub fn coverage(subject: &Subject<'_>, envelopes: u64) -> Result<Cohort, String> {
     const RATE: f64 = 0.19;
     const SCATTER: f64 = 0.1;
-    // The level of `scattered`.
+    // Level used by `scattered`.
     const LEVEL: f64 = -0.6;
     let normal = Normal::new(0.0, SCATTER).map_err(|error| error.to_string())?;
     let mut cohort = Cohort::default();
@@ -99,7 +99,7 @@ mod tests {
         Entry, Estimate, Estimator, FitContext, FitError, Prediction, Reached, Stop, Uncertainty,
     };
 
-    /// States the right rate and an interval of half-width 0.5 with this standard error.
+    /// Estimator that states the right rate and an interval of half-width 0.5 with the given standard error.
     struct Stating(f64);
 
     impl Estimator for Stating {

@@ -1,4 +1,4 @@
-//! The envelopes that estimators are tried on.
+//! Envelopes that the battery fits.
 
 use envelope::Envelope;
 use rand_distr::{Distribution, Normal};
@@ -11,14 +11,14 @@ fn times(peaks: usize) -> Vec<f64> {
     (0..peaks).map(|i| PERIOD_S * i as f64).collect()
 }
 
-/// An envelope from its function of time; `None` where that is not finite.
+/// Creates an envelope from a function of time; `None` if the function is not finite.
 fn envelope(peaks: usize, log_amplitude: impl Fn(f64) -> f64) -> Option<Envelope> {
     let times = times(peaks);
     let logs = times.iter().map(|&time| log_amplitude(time)).collect();
     Envelope::new(times, logs, OMEGA_RAD_S).ok()
 }
 
-/// A noise-free exponential: ln A = `log_amplitude` − `decay_rate`·t, peaks 0.288 s apart.
+/// Creates a noise-free exponential: ln A = `log_amplitude` − `decay_rate`·t, with peaks 0.288 s apart.
 ///
 /// `None` for fewer than three peaks or numbers that are not finite.
 #[must_use]
@@ -26,7 +26,8 @@ pub fn exponential(peaks: usize, log_amplitude: f64, decay_rate: f64) -> Option<
     envelope(peaks, |time| log_amplitude - decay_rate * time)
 }
 
-/// An exponential with Gaussian scatter of standard deviation `scatter` on ln A, drawn from `seed`.
+/// Creates an exponential that starts at ln A = −0.6, with Gaussian scatter of standard deviation `scatter`
+/// on ln A, drawn from `seed`.
 ///
 /// `None` as for [`exponential`], or for a negative scatter.
 #[must_use]
@@ -38,8 +39,8 @@ pub fn scattered(peaks: usize, decay_rate: f64, scatter: f64, seed: &Seed) -> Op
     Envelope::new(times, logs, OMEGA_RAD_S).ok()
 }
 
-/// An envelope that is no exponential: 69 peaks that bend like dry friction's and scatter, as measured
-/// ones do. Its scatter is a fixed pattern, the same for everybody.
+/// Creates an envelope that is no exponential: 69 peaks that bend as under dry friction and scatter as
+/// measured ones do. The scatter is a fixed pattern, the same for every estimator.
 #[must_use]
 pub fn bent() -> Option<Envelope> {
     let scatter = |time: f64| 0.03 * (37.0 * time).sin() + 0.02 * (91.0 * time + 1.0).cos();
@@ -50,7 +51,7 @@ pub fn bent() -> Option<Envelope> {
 mod tests {
     use envelope::{Envelope, EnvelopeError};
 
-    /// What no estimator can be handed, whoever wrote it: the type refuses, with a typed error.
+    /// Envelopes that no estimator can receive: the type refuses them with a typed error.
     #[test]
     fn peaks_out_of_order_twice_not_finite_or_too_few_are_no_envelope() {
         let logs = [0.0, -0.1, -0.3, -0.4];

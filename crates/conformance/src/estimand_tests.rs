@@ -1,4 +1,4 @@
-//! What an estimator estimates decides which checks it is held to.
+//! Tests that an estimator's estimand selects the checks that it is held to.
 
 use crate::CHECKS;
 use crate::Subject;
@@ -26,7 +26,8 @@ fn estimate(
     }
 }
 
-/// The decay rate at the first peak of a parabola in ln A: where friction or drag bend the envelope, not its mean slope.
+/// Decay rate at the first peak of a parabola in ln A. It differs from the mean slope if friction or drag
+/// bend the envelope.
 struct Initial;
 
 impl Estimator for Initial {

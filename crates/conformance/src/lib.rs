@@ -1,12 +1,12 @@
-//! The battery that every estimator passes, as a library.
+//! Conformance battery that every estimator passes, as a library.
 //!
-//! A check is data ([`Check`]): a name, the estimators it applies to (by tag, never by name), and what it
-//! demands. Whoever runs the battery makes one test of each pair of estimator and check; a waiver
-//! carries its reason, and a waived check that passes is a failure too ([`verdict`]).
+//! A check is data ([`Check`]): a name, the estimators it applies to (by tag, never by name), and a function
+//! that tests them. A test harness makes one test of each pair of estimator and check. A waiver states its
+//! reason, and a waived check that passes is a failure too ([`verdict`]).
 //!
-//! No check hands an estimator peaks in another order, the same peak twice, a number that is not finite or
-//! fewer than three peaks: the envelope's type refuses them, so that there is nothing to hand over. One
-//! test, here, holds that wall ([`Envelope::new`](envelope::Envelope::new)).
+//! No check needs to pass peaks out of order, repeated peaks, numbers that are not finite or fewer than three
+//! peaks to an estimator, because the envelope's type refuses them. One test in this crate covers that
+//! refusal ([`Envelope::new`](envelope::Envelope::new)).
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -28,33 +28,33 @@ pub use subject::{Subject, query_times};
 
 use estimator::Entry;
 
-/// One demand on estimators.
+/// One requirement on estimators.
 #[derive(Debug, Clone, Copy)]
 pub struct Check {
-    /// Name, as tests carry it.
+    /// Name of the check in test names.
     pub name: &'static str,
-    /// Which estimators it applies to.
+    /// Returns `true` for the estimators that the check applies to.
     pub applies: fn(&Entry) -> bool,
-    /// Runs it; what is wrong comes back as a sentence with numbers.
+    /// Runs the check; a failure is returned as a sentence with numbers.
     pub run: fn(&Subject<'_>) -> Result<(), String>,
 }
 
-/// A check that an estimator is let off, and why.
+/// Exemption of an estimator from a check, with its reason.
 #[derive(Debug, Clone, Copy)]
 pub struct Waiver {
     /// Identifier of the estimator.
     pub estimator: &'static str,
     /// Name of the check.
     pub check: &'static str,
-    /// Why.
+    /// Reason of the exemption.
     pub reason: &'static str,
 }
 
-/// Runs a check on an estimator under a list of waivers: `Ok` with a remark where it is waived and fails
-/// as expected.
+/// Runs a check on an estimator under a list of waivers. Returns a remark if the check is waived and fails as
+/// expected.
 ///
 /// # Errors
-/// What is wrong: the check fails, or it is waived and passes.
+/// Description of the failure: the check fails, or it is waived and passes.
 pub fn verdict(check: &Check, subject: &Subject<'_>, waivers: &[Waiver]) -> Result<Option<String>, String> {
     let outcome = (check.run)(subject);
     let id = subject.entry.id;

@@ -1,17 +1,17 @@
-//! The textbook's least-squares line, for tests to compare with.
+//! Least-squares line by the textbook formula, for tests to compare with.
 
 use envelope::Envelope;
 
-/// A decay rate and its standard error, by least squares.
+/// Decay rate and its standard error, by least squares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
     /// Minus the slope of ln A, in 1/s.
     pub decay_rate: f64,
-    /// Its standard error under independent residuals, by peaks − 2, in 1/s.
+    /// Standard error of the decay rate, in 1/s, for independent residuals with peaks − 2 degrees of freedom.
     pub std_error: f64,
 }
 
-/// The least-squares line through an envelope: the textbook's formula, good to ten digits on the
+/// Fits the least-squares line to an envelope by the textbook formula, accurate to ten digits on the
 /// battery's envelopes.
 #[must_use]
 pub fn least_squares(envelope: &Envelope) -> Line {

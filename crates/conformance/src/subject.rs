@@ -1,4 +1,4 @@
-//! An estimator under test.
+//! Estimator under test.
 
 use envelope::Envelope;
 use estimator::{Ablation, Cancel, Entry, Estimate, Estimator, FitContext, FitError, Silent, Tag};
@@ -8,31 +8,30 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// The seed of a fit and the cap on its steps.
+/// Seed of a fit and cap on its steps.
 type Course = (u64, Option<u64>);
 
-/// What pretraining gives.
+/// Result of pretraining.
 type Reader = Option<Box<dyn Estimator>>;
 
-/// An estimator under test, with its default settings. What one check has had it fit or learn, the next
-/// one finds done.
+/// Estimator under test, with its default settings. Fits and trainings are stored, so that several checks can
+/// use them.
 pub struct Subject<'a> {
-    /// The registry's line.
+    /// Registry entry of the estimator.
     pub entry: &'a Entry,
     estimator: Box<dyn Estimator>,
     pretrained: Done<Course, Result<Reader, FitError>>,
     fitted: Done<(Vec<u64>, Course), Result<Estimate, FitError>>,
 }
 
-/// Steps of an amortized estimator where a check asks for a training of its own and what it learns does
-/// not matter.
+/// Steps of an amortized estimator in checks that need a separate training but not its result.
 const FEW_STEPS: u64 = 10;
 
 impl<'a> Subject<'a> {
-    /// The estimator with its default settings.
+    /// Builds the estimator with its default settings.
     ///
     /// # Errors
-    /// What building it gives; every estimator has to build from its defaults.
+    /// Error of the build; every estimator has to build from its defaults.
     pub fn new(entry: &'a Entry) -> Result<Self, SettingsError> {
         let section = [Section { name: "estimator", fields: entry.fields }];
         let resolved = Resolved::new(&Document::default(), &section)?;
@@ -40,11 +39,11 @@ impl<'a> Subject<'a> {
         Ok(Self { entry, estimator, pretrained: Done::default(), fitted: Done::default() })
     }
 
-    /// A fit with a seed and a cap on the steps, with predictions at [`query_times`]. The same fit is done
-    /// once only, and so is the training of an amortized estimator.
+    /// Fits an envelope with a seed and a cap on the steps, and predicts at [`query_times`]. Each distinct
+    /// fit runs only once, and so does the training of an amortized estimator.
     ///
     /// # Errors
-    /// What the fit gives.
+    /// Error of the fit.
     pub fn fit(&self, envelope: &Envelope, seed: u64, max_steps: Option<u64>) -> Result<Estimate, FitError> {
         let numbers = envelope.times_s().iter().chain(envelope.log_amplitudes());
         let bits = numbers.chain([&envelope.omega_rad_s()]).map(|number| number.to_bits()).collect();
@@ -52,11 +51,11 @@ impl<'a> Subject<'a> {
         fit.as_ref().clone()
     }
 
-    /// As [`Subject::fit`], of many envelopes that are fitted once: the fit is not kept, the training of an
-    /// amortized estimator is.
+    /// Fits as [`Subject::fit`] does, for envelopes that are fitted only once: the fit is not stored, but the
+    /// training of an amortized estimator is.
     ///
     /// # Errors
-    /// What the fit gives.
+    /// Error of the fit.
     pub fn read(&self, envelope: &Envelope, seed: u64, max_steps: Option<u64>) -> Result<Estimate, FitError> {
         if !self.entry.has(Tag::Amortized) {
             return self.fit_anew(envelope, seed, max_steps);
@@ -69,10 +68,10 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// A fit without a part of the estimator; an amortized estimator is trained whole, and reads without it.
+    /// Fits with an ablation. An amortized estimator is trained without it, and evaluated with it.
     ///
     /// # Errors
-    /// What the fit gives.
+    /// Error of the fit.
     pub fn ablated(&self, envelope: &Envelope, seed: u64, ablation: Ablation) -> Result<Estimate, FitError> {
         let cancel = Cancel::new();
         let context = self.context(seed, None, &cancel).ablating(ablation);
@@ -86,10 +85,10 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// A fit from scratch, by the estimator itself.
+    /// Fits from scratch, by the estimator itself.
     ///
     /// # Errors
-    /// What the fit gives.
+    /// Error of the fit.
     pub fn fit_anew(
         &self,
         envelope: &Envelope,
@@ -99,15 +98,15 @@ impl<'a> Subject<'a> {
         self.run(self.estimator.as_ref(), envelope, seed, max_steps)
     }
 
-    /// A cap on the steps for checks that ask for a training of their own: few for an amortized estimator,
-    /// whose training is long and the same for every envelope, none for the others.
+    /// Returns the cap on the steps for checks that need a separate training: few steps for an amortized
+    /// estimator, whose training is long and the same for every envelope; no cap for the others.
     #[must_use]
     pub fn short(&self) -> Option<u64> {
         self.entry.has(Tag::Amortized).then_some(FEW_STEPS)
     }
 
-    /// The seed of a fit of the `draw`-th envelope of a cohort: an amortized estimator is trained once and
-    /// reads them all.
+    /// Returns the seed for the fit of the `draw`-th envelope of a cohort. It is always 0 for an amortized
+    /// estimator, which is trained once for all envelopes.
     #[must_use]
     pub fn seed_of_draw(&self, draw: u64) -> u64 {
         if self.entry.has(Tag::Amortized) { 0 } else { draw }
@@ -134,8 +133,8 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// Where predictions are asked for, in seconds: at the envelope's own times, halfway between them, and at a
-/// tenth of its length beyond.
+/// Returns the times of predictions, in seconds: the envelope's own times, the midpoints between them, and a
+/// time beyond its end by a tenth of its length.
 #[must_use]
 pub fn query_times(envelope: &Envelope) -> Vec<f64> {
     let times = envelope.times_s();
@@ -144,10 +143,10 @@ pub fn query_times(envelope: &Envelope) -> Vec<f64> {
     times.iter().copied().chain(between).chain(beyond).collect()
 }
 
-/// What has been worked out, by what it belongs to. Whoever asks while it is being worked out waits.
+/// Store of finished results by key. A thread that asks for a result in progress waits for it.
 struct Done<K, V>(Mutex<HashMap<K, Arc<Once<V>>>>);
 
-/// A result, once it is there.
+/// Result that is computed once.
 type Once<V> = OnceLock<Arc<V>>;
 
 impl<K, V> Default for Done<K, V> {
@@ -158,7 +157,8 @@ impl<K, V> Default for Done<K, V> {
 
 impl<K: Hash + Eq, V> Done<K, V> {
     fn of(&self, key: K, work: impl FnOnce() -> V) -> Arc<V> {
-        // The lock is held to find the place only, not for the work; a panic elsewhere leaves the map whole.
+        // The lock is held only to find the place, not during the work; a panic elsewhere leaves the map
+        // intact.
         let place = Arc::clone(self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default());
         Arc::clone(place.get_or_init(|| Arc::new(work())))
     }

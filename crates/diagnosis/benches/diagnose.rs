@@ -1,4 +1,4 @@
-//! How long an answer takes: 25 s of a swing, 260 samples a second, on one thread and on one for each core.
+//! Benchmark of a diagnosis: 25 s of a swing, 260 samples a second, on one thread and on one for each core.
 //!
 //!     cargo bench -p diagnosis
 
@@ -13,7 +13,7 @@ use record::{Clock, ClockChoice};
 #[path = "../src/fixtures.rs"]
 mod fixtures;
 
-/// What is missing in the simulator, and the step of the encoder in rad, 0 for none.
+/// Name of a case, the effects that the simulator lacks, and the step of the encoder in rad, 0 for none.
 type Case = (&'static str, &'static [(&'static str, &'static [f64])], f64);
 
 const CASES: [Case; 4] = [

@@ -1,318 +1,333 @@
-//! The answer of a diagnosis, as plain data.
+//! Answer of a diagnosis, as plain data.
 
 use crate::noise::floor::NoiseFloor;
 use dynamics::{Active, Hold, Nominal};
 pub use results::VerdictStatus as Status;
 use serde::Serialize;
 
-/// A number with its 95 % interval.
+/// Number with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
-    /// The estimate.
+    /// Estimate.
     pub value: f64,
     /// Lower and upper end of the 95 % interval.
     pub interval_95: [f64; 2],
 }
 
-/// The verdict.
+/// Verdict of a diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
-    /// What it comes to.
+    /// Status of the diagnosis.
     pub status: Status,
-    /// Ids of the effects, by their share of the gap; effects that show in stamps or in the noise come last.
+    /// Ids of the named effects, by their share of the gap; effects that show in time stamps or values
+    /// directly come last.
     pub effects: Vec<&'static str>,
-    /// Probability of this status and of these effects together.
+    /// Probability that the status and exactly these effects are right.
     pub confidence: f64,
-    /// Probability that anything beyond noise is left beside them, however little of the gap it is.
+    /// Probability that anything beyond noise is left beside these effects, however small its share of the
+    /// gap.
     pub left_over: f64,
-    /// Classes of effects that these data cannot tell apart.
+    /// Groups of ids that these data cannot distinguish, each led by an effect of the verdict.
     pub equivalent: Vec<Vec<&'static str>>,
 }
 
-/// A parameter of an effect.
+/// Estimate of a parameter of an effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParameterEstimate {
-    /// Its name in the registry.
+    /// Name in the registry.
     pub name: &'static str,
     /// Unit symbol.
     pub unit: String,
     /// Value and interval; the interval is widened for the residual's autocorrelation.
     #[serde(flatten)]
     pub estimate: Interval,
-    /// Whether the interval says anything.
+    /// `true` if the data determine the parameter.
     pub determined: bool,
 }
 
-/// A member of the list of probabilities.
+/// Probability of one effect or status.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectProbability {
-    /// An id of the vocabulary, or `none`, `calibration`, `unknown`.
+    /// Id of the vocabulary, or `none`, `calibration`, `unknown`.
     pub id: &'static str,
-    /// Its probability, as often as such effects were there in withheld-effect trials. Several can act at
-    /// once: they need not add up to 1.
+    /// Probability, calibrated against how often such effects were there in withheld-effect trials. Several
+    /// effects can act at once: the probabilities need not add up to 1.
     pub probability: f64,
-    /// Parameters in the best set that has it; empty for what has none. Those of `unknown` are of a torque along the position,
-    /// where one acts.
+    /// Parameters in the best set that has the effect; empty if there are none. Those of `unknown` are of a
+    /// torque along the position, if one acts.
     pub parameters: Vec<ParameterEstimate>,
-    /// Its Shapley share of the gap that the repaired simulator closes, for effects of the verdict. A torque without a name
-    /// comes after them: its share is what it adds.
+    /// Shapley share of the gap that the repaired simulator closes, for effects of the verdict. A torque
+    /// without a name comes after them: its share is what it adds.
     pub gap_share: Option<Interval>,
 }
 
-/// An effect within a class.
+/// Effect within a class.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Kind {
-    /// Its id.
+    /// Id of the effect.
     pub id: &'static str,
-    /// Probability that it is this one, given that the class is there; all of a class add up to 1.
+    /// Probability of this kind, given that the class is there; those of all kinds of a class add up to 1.
     pub share: f64,
 }
 
-/// What speaks for a class of effects, as natural logarithms of ratios.
+/// Evidence for a class of effects, in nats.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ClassEvidence {
-    /// Log evidence of the best set of effects with the class over the best one without it, by what they predict of parts
-    /// that they were not fitted to.
+    /// Log evidence of the best set of effects with the class, minus that of the best set without it. It
+    /// comes from held-out predictions or, if probably nothing is left beside the best set, from the
+    /// residuals of the fitted samples.
     pub replacement: f64,
-    /// The same from the amplitudes, durations and centers of half swings; `None` where these do not show the class.
+    /// Log evidence from the amplitudes of half swings: that of the best combination of laws of loss with dry
+    /// friction (class `friction`) or quadratic drag (class `damping`), minus that of the best one without
+    /// it. `None` for other classes, for fewer than eight half swings, and if no record swings freely.
     pub half_swings: Option<f64>,
 }
 
-/// Effects that explain alike, and whether a system with these records has any of them.
+/// Class of effects that explain alike, with the probability that the system has any of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectClass {
-    /// Its id.
+    /// Id of the class.
     pub id: &'static str,
-    /// Probability that the system has it.
+    /// Probability that the system has the class.
     pub probability: f64,
-    /// Where another class would take its place nearly as well, and less well than it takes the other's: the probability that
-    /// one of the two acts.
+    /// Probability that at least one of this class and a less probable one acts, if the two can replace each
+    /// other; `None` if there is no such class.
     pub either: Option<f64>,
     /// Shapley share of the gap that the repaired simulator closes, for classes of the verdict.
     pub gap_share: Option<Interval>,
-    /// Its members that were fitted, the most probable first.
+    /// Fitted kinds of the class, the most probable first.
     pub kinds: Vec<Kind>,
-    /// Whether these data tell which of them it is.
+    /// `true` if these data identify the kind.
     pub kind_is_told: bool,
-    /// Error on held-out parts of the best set without the class, and with it, in the observed quantity's unit.
+    /// Held-out error of the best set without the class, in the observed quantity's unit; NaN for a class
+    /// that only time stamps, values or the rest angle show.
     pub error_without: f64,
-    /// See `error_without`.
+    /// Held-out error of the best set with the class; see `error_without`.
     pub error_with: f64,
-    /// Part of the draws of segments, with replacement, in which the class is better supported than what takes its place.
+    /// Share of the draws of segments, with replacement, in which the best set has the class.
     pub stability: f64,
-    /// What the probability follows from.
+    /// Evidence that the probability follows from.
     pub evidence: ClassEvidence,
 }
 
-/// What the named effects leave.
+/// Left-over beside the named effects.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LeftOver {
-    /// Share of the gap, beyond the noise, that has no name: 1 less the closure.
+    /// Share of the gap, beyond the noise, that has no name: 1 minus the closure.
     pub share_of_gap: f64,
-    /// Held-out error over the noise.
+    /// Held-out error over the noise (× noise).
     pub over_noise: f64,
 }
 
-/// How far the gap shrinks. Root mean squares on parts not fitted, in the observed quantity's unit.
+/// Size of the gap before and after the repair: root mean square errors on held-out parts, in the observed
+/// quantity's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gap {
-    /// Unit of all of it.
+    /// Unit of the errors.
     pub unit: &'static str,
-    /// The given simulator; only start states fitted.
+    /// Error of the nominal simulator; only start states are fitted.
     pub nominal: f64,
-    /// Recalibrated.
+    /// Error of the recalibrated simulator.
     pub recalibrated: f64,
-    /// With the named effects, and with the torque along the position that acts beside them without a name.
+    /// Error with the named effects, and with the torque without a name along the position, if one acts
+    /// beside them.
     pub repaired: f64,
-    /// With a free latent torque on top, where that predicts better than none.
+    /// Error with a free latent torque added, if it predicts better than none; otherwise the same as
+    /// `repaired`.
     pub ceiling: f64,
-    /// The noise floor.
+    /// Noise floor.
     pub noise_floor: NoiseFloor,
-    /// 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired R and the given simulator's R₀; what is below −1, worse by the gap itself, is
-    /// stated as −1.
+    /// Closure 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired error R, the nominal error R₀ and the noise s₀;
+    /// values below −1 (worse by the gap itself) are stated as −1.
     pub closure: Interval,
-    /// The same with the recalibrated simulator in R₀'s place: what the effects did.
+    /// Closure relative to the recalibrated simulator, whose error takes the place of R₀: the share closed by
+    /// the effects.
     pub closure_of_recalibrated: Interval,
-    /// Repaired over floor.
+    /// Repaired error over the noise floor (× noise).
     pub ratio_to_floor: Interval,
-    /// Recalibrated and repaired on the last third of the segments, fitted to the first two thirds.
+    /// Errors of the recalibrated and the repaired simulator on the last third of the segments, fitted to the
+    /// first two thirds.
     pub last_third: [f64; 2],
-    /// How the parts not fitted were chosen.
+    /// Description of how the held-out parts were chosen.
     pub held_out: String,
 }
 
-/// Shares of the gap beyond recalibration by class; they add up to 1, or are all 0 where there is no such gap.
+/// Shares of the gap beyond recalibration by class of cause. They add up to 1, or are all 0 if there is no
+/// such gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Budget {
-    /// Takes energy out.
+    /// Share of causes that take energy out.
     pub dissipative: f64,
-    /// Depends on position.
+    /// Share of causes that depend on position.
     pub conservative: f64,
-    /// Depends on time.
+    /// Share of causes that depend on time.
     pub time_dependent: f64,
-    /// Distorts the values.
+    /// Share of causes that distort the values.
     pub sensor: f64,
-    /// Distorts the times.
+    /// Share of causes that distort the times.
     pub clock: f64,
 }
 
-/// A cell of a map.
+/// Cell of a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cell {
     /// Lower and upper bound along each axis of the map.
     pub bounds: Vec<[f64; 2]>,
-    /// Root mean square of the recalibrated simulator's held-out residual in the cell.
+    /// Root mean square of the recalibrated simulator's held-out residual in the cell, in the observed
+    /// quantity's unit.
     pub value: f64,
-    /// The same with the named effects.
+    /// The same for the repaired simulator.
     pub repaired: f64,
-    /// What noise alone exceeds with 5 % probability in any cell of the map at all.
+    /// Level that noise alone exceeds in at least one cell of the map with 5 % probability.
     pub band: f64,
-    /// Whether the value lies above the band.
+    /// `true` if `value` lies above `band`.
     pub significant: bool,
-    /// Samples in the cell.
+    /// Number of samples in the cell.
     pub samples: usize,
 }
 
-/// Where the gap lies.
+/// Place of the gap: budget and maps.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Where {
-    /// By class of cause.
+    /// Shares by class of cause.
     pub budget: Budget,
-    /// Over time in seconds; one axis.
+    /// Map over time in seconds; one axis.
     pub time: Vec<Cell>,
-    /// Over the amplitude of the swing in rad or m; one axis.
+    /// Map over the amplitude of the swing in rad or m; one axis.
     pub amplitude: Vec<Cell>,
-    /// Over position and velocity; two axes.
+    /// Map over position and velocity; two axes.
     pub phase: Vec<Cell>,
-    /// Over angular frequency in rad/s; one axis. Values are root mean squares within the band of frequencies.
+    /// Map over angular frequency in rad/s; one axis. Values are root mean squares within the band of
+    /// frequencies.
     pub frequency: Vec<Cell>,
 }
 
-/// Something that stamps or values show directly.
+/// Finding that time stamps or values show directly.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// Id of the vocabulary it stands for, where there is one.
+    /// Id of the effect in the vocabulary, if there is one.
     pub effect: Option<&'static str>,
-    /// A sentence with numbers.
+    /// Text of the finding: a sentence with numbers.
     pub text: String,
 }
 
-/// The measuring chain.
+/// Measurement chain of the records.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuringChain {
-    /// The clock believed: `host`, `uniform-index` or `index-with-gaps`.
+    /// Clock that is believed: `host`, `uniform-index` or `index-with-gaps`.
     pub clock: &'static str,
     /// Sampling rate in hertz.
     pub sample_rate_hz: f64,
-    /// The sensor's step, where the values lie on a lattice.
+    /// Step of the sensor in the observed quantity's unit, if the values lie on a lattice.
     pub resolution: Option<f64>,
-    /// Standard deviation of the noise.
+    /// Standard deviation of the noise, in the observed quantity's unit.
     pub noise: f64,
-    /// What was found.
+    /// Findings on the measurement chain.
     pub findings: Vec<Finding>,
 }
 
-/// A nominal coefficient before and after.
+/// Nominal coefficient before and after the fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Calibrated {
-    /// Its name.
+    /// Name of the coefficient.
     pub name: &'static str,
-    /// As the nominal simulator has it.
+    /// Value in the nominal simulator.
     pub nominal: f64,
-    /// Recalibrated without effects; `None` where these data cannot tell it.
+    /// Value recalibrated without effects; `None` if these data cannot determine it, so that it is held.
     pub recalibrated: Option<Interval>,
-    /// With the named effects.
+    /// Value fitted with the named effects; `None` if it is held.
     pub repaired: Option<Interval>,
-    /// Whether the interval with the named effects says anything; `None` where it was held.
+    /// `true` if the data determine the value with the named effects; `None` if it is held.
     pub determined: Option<bool>,
 }
 
-/// An effect that the nominal simulator has, before and after.
+/// Effect that the nominal simulator has, before and after the fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct KnownRow {
-    /// Its id.
+    /// Id of the effect.
     pub id: &'static str,
-    /// Whether recalibration may move its parameters.
+    /// `true` if recalibration may move its parameters.
     pub recalibrate: bool,
-    /// As the nominal simulator has it.
+    /// Effect as the nominal simulator has it.
     pub nominal: Option<Active>,
-    /// Recalibrated without further effects; empty where it is held.
+    /// Parameters recalibrated without further effects; empty if they are held.
     pub recalibrated: Vec<ParameterEstimate>,
-    /// With the named effects; empty where it is held.
+    /// Parameters fitted with the named effects; empty if they are held.
     pub repaired: Vec<ParameterEstimate>,
 }
 
-/// A number that the data do not determine.
+/// Number that the data do not determine.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Undetermined {
-    /// Its name, as `rest_angle` or `gravity.angle`.
+    /// Name, such as `rest_angle` or `gravity.angle`.
     pub name: String,
-    /// Whether the nominal simulator's number stands in its place; otherwise it is as it was fitted.
+    /// `true` if the nominal simulator's number stands in its place; otherwise it is the fitted one.
     pub is_nominal: bool,
 }
 
-/// The repaired simulator: the recalibrated nominal one with the effects that it lacked.
+/// Repaired simulator: the recalibrated nominal one with the effects that it lacked.
 ///
-/// A number that the data do not determine is the nominal one, the others fitted beside it. Every fitted number is
-/// written to the digits that matter: rounding moves it by less than a hundredth of its standard error with all others
-/// given.
+/// A number that the data do not determine is the nominal one, and the others are fitted beside it. Every
+/// fitted number is written to the digits that matter: rounding moves it by less than a hundredth of its
+/// standard error given all others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RepairedSimulator {
-    /// The oscillator.
+    /// Oscillator with the repaired coefficients.
     pub nominal: Nominal,
-    /// The effects that the nominal simulator has, then those that it lacked.
+    /// Effects of the nominal simulator, then those that it lacked.
     pub effects: Vec<Active>,
     /// Numbers that the data do not determine.
     pub undetermined: Vec<Undetermined>,
-    /// What a measured input does between its samples, where there is one: the belief with which it was fitted.
+    /// Behavior of a measured input between its samples, as believed in the fits; `None` without an input.
     pub input_hold: Option<Hold>,
     /// Effects that cannot be part of it, each with the reason.
     pub left_out: Vec<(&'static str, String)>,
 }
 
-/// A pair of explanations on these data.
+/// Pair of explanations on these data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rivalry {
-    /// An effect of the verdict.
+    /// Effect of the verdict.
     pub effect: &'static str,
-    /// What could stand in its place.
+    /// Effect that could take its place.
     pub rival: &'static str,
-    /// Distance of the two best fits in noise units; below 3.29 they are one class.
+    /// Distance of the two best fits in units of the noise: the root of twice their log likelihood ratio.
+    /// Below 3.29 the data cannot distinguish them.
     pub distance: f64,
 }
 
-/// How detectable an effect of the verdict is on these data.
+/// Detectability of an effect of the verdict on these data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Detectability {
-    /// The effect.
+    /// Id of the effect.
     pub effect: &'static str,
-    /// What leaving it out costs, in noise units.
+    /// Cost of leaving the effect out, in units of the noise: the root of twice the log likelihood ratio.
     pub d: f64,
 }
 
-/// The experiment that would tell the closest rivals apart.
+/// Experiment that would distinguish the closest rivals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Experiment {
-    /// What to do.
+    /// Description of the experiment.
     pub text: String,
-    /// The two explanations.
+    /// Ids of the two explanations.
     pub separates: Vec<&'static str>,
-    /// Predicted distance in noise units with this experiment beside the present data.
+    /// Predicted distance in units of the noise, with this experiment beside the present data.
     pub distance: f64,
     /// Every experiment considered, with its predicted distance.
     pub considered: Vec<(String, f64)>,
 }
 
-/// A set of effects that was fitted.
+/// Set of effects that was fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetScore {
-    /// Its effects.
+    /// Ids of its effects.
     pub effects: Vec<&'static str>,
-    /// Its probability among the sets.
+    /// Probability among the sets.
     pub probability: f64,
-    /// Root mean square residual, in sample.
+    /// Root mean square residual of the fitted samples.
     pub rms: f64,
-    /// Tempered log evidence relative to the calibrated simulator.
+    /// Log evidence relative to the recalibrated simulator, in nats.
     pub evidence: f64,
 }
 
@@ -321,69 +336,70 @@ pub struct SetScore {
 pub struct Series {
     /// Time in seconds.
     pub time_s: Vec<f64>,
-    /// What was observed.
+    /// Observed values.
     pub observed: Vec<f64>,
-    /// Residuals (observed minus predicted) of the given simulator; only start states were fitted.
+    /// Residuals (observed minus predicted) of the nominal simulator; only start states were fitted.
     pub nominal_residual: Vec<f64>,
     /// Held-out residuals of the recalibrated simulator.
     pub recalibrated_residual: Vec<f64>,
-    /// Held-out residuals with the named effects.
+    /// Held-out residuals of the repaired simulator.
     pub repaired_residual: Vec<f64>,
-    /// Position and velocity of the repaired simulator, fitted to all segments.
+    /// Position of the repaired simulator, fitted to all segments.
     pub position: Vec<f64>,
-    /// See `position`.
+    /// Velocity of the repaired simulator; see `position`.
     pub velocity: Vec<f64>,
-    /// Torque of the input; 0 without one.
+    /// Torque of the input; 0 without an input.
     pub input_torque: Vec<f64>,
-    /// First sample of each segment.
+    /// Index of the first sample of each segment.
     pub segment_starts: Vec<usize>,
-    /// The record, from 0, that each segment is of.
+    /// Index of the record of each segment, from 0.
     pub segment_records: Vec<usize>,
 }
 
 /// Time spent in a stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stage {
-    /// Its name.
+    /// Name of the stage.
     pub name: &'static str,
     /// Seconds by the stopwatch that was passed in.
     pub seconds: f64,
 }
 
-/// The answer.
+/// Diagnosis of the gap between a nominal simulator and records.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnosis {
-    /// What it comes to.
+    /// Verdict: status, effects and confidence.
     pub verdict: Verdict,
-    /// `none`, `calibration`, `unknown`, every effect that is named, and every other whose sets have a
-    /// probability above 0.01 together; best first.
+    /// Probabilities of `none`, `calibration` and `unknown`, of every named effect, and of every other effect
+    /// with a probability of at least 0.01; largest first.
     pub effects: Vec<EffectProbability>,
     /// Classes of effects, the most probable first.
     pub classes: Vec<EffectClass>,
-    /// What the named effects leave.
+    /// Left-over beside the named effects.
     pub left_over: LeftOver,
-    /// How far the gap shrinks.
+    /// Size of the gap before and after the repair.
     pub gap: Gap,
-    /// Where it lies.
+    /// Place of the gap.
     #[serde(rename = "where")]
     pub place: Where,
-    /// The measuring chain.
+    /// Measurement chain of the records.
     pub measuring_chain: MeasuringChain,
-    /// Nominal coefficients.
+    /// Nominal coefficients before and after the fits.
     pub calibration: Vec<Calibrated>,
-    /// The effects that the nominal simulator has.
+    /// Known effects: those of the nominal simulator.
     pub known: Vec<KnownRow>,
-    /// The repaired simulator.
+    /// Repaired simulator.
     pub repaired: RepairedSimulator,
     /// Rivals on these data, closest first.
     pub rivals: Vec<Rivalry>,
     /// Detectability of the verdict's effects.
     pub detectability: Vec<Detectability>,
-    /// What would tell the closest rivals apart, where there are any.
+    /// Experiment that would distinguish the closest rivals, if there are any.
     pub next_experiment: Option<Experiment>,
-    /// The sets fitted, best first.
+    /// Fitted sets, best first.
     pub sets: Vec<SetScore>,
-    /// Sets rejected because a strength ended at zero: with the right sign the data have no use for it.
+    /// Sets rejected because a strength ended at zero, so that the data do not support it with the right
+    /// sign, or because a shape reduced an effect to another one.
     pub rejected: Vec<Vec<&'static str>>,
     /// Series for plots.
     pub series: Series,

@@ -1,4 +1,4 @@
-//! From observations to an answer, stage by stage.
+//! Diagnosis from observations, stage by stage.
 
 use crate::answer::Diagnosis;
 use crate::data::observations::Observations;
@@ -12,10 +12,11 @@ use crate::stages::{
 use dynamics::{Hold, NominalSimulator};
 use std::cell::OnceCell;
 
-/// How often clocks, and how much of an input is looked at, are corrected: what a corrected search finds may leave a little more of them.
+/// Largest number of corrections of the clocks, and of the knots of an input: after a correction, the search
+/// may find sets that ask for a little more.
 const CORRECTIONS: usize = 2;
 
-/// Records as they were taken, what was asked of them, and what the search has found.
+/// Data, question and search result of the first stages.
 struct Sought {
     measured: Measured,
     question: Question,
@@ -23,8 +24,8 @@ struct Sought {
 }
 
 impl Sought {
-    /// The first stages: `hold` is what the input does between its samples, where that is decided; a search goes on from a set
-    /// that is known.
+    /// Runs the first stages. `hold` is the behavior of the input between its samples, if it is decided; the
+    /// search starts from the `known` set, if there is one.
     fn of(
         request: &Request<'_>,
         hold: Option<Hold>,
@@ -38,8 +39,9 @@ impl Sought {
         sought.with_enough_input(request, watch)
     }
 
-    /// The same with as much of the input as the sets need that were found. The recalibrated simulator, which may hardly follow the
-    /// input, has chosen how few knots it has; sets that follow it are bent by that, and others mend what it does.
+    /// Repeats the search with as many knots of the input as the found sets need. The recalibrated simulator,
+    /// which may hardly follow the input, chose how few knots there are. Sets that do follow it are distorted
+    /// by too few knots, and other effects compensate for that.
     fn with_enough_input(
         mut self,
         request: &Request<'_>,
@@ -54,9 +56,9 @@ impl Sought {
         Ok(self)
     }
 
-    /// The same with the other belief about the input between its samples, where that comes closer. The recalibrated simulator,
-    /// which lacks what is looked for, has chosen between the two, and half a sampling interval lies between them: the sets
-    /// that were found are asked again.
+    /// Repeats the search with the other behavior of the input between its samples, if that comes closer. The
+    /// recalibrated simulator, which lacks the missing effects, chose between the two, which differ by half a
+    /// sampling interval. So the found sets are compared under both.
     fn with_the_better_hold(
         self,
         request: &Request<'_>,
@@ -70,12 +72,13 @@ impl Sought {
         sought.with_enough_input(request, watch)
     }
 
-    /// Whether it has come closer than another by so much log evidence.
+    /// Returns `true` if this search has come closer than another one by more than `price` nats.
     fn is_closer(&self, other: &Self, price: f64) -> bool {
         self.searched.is_closer(&other.searched, other.question.candidates.len(), price)
     }
 
-    /// Clocks without the rates that a found set leaves, and this set; none where none leaves any.
+    /// Returns the clocks corrected for the rate errors that a found set shows, and this set; `None` if no
+    /// set shows any.
     fn clocks_corrected(&self, clocks: &ClockRates) -> Option<(ClockRates, Fit)> {
         let sets = (&self.searched.interval, &self.searched.found);
         clocks.corrected(&self.question.coarse, sets, self.question.candidates.len())
@@ -84,15 +87,15 @@ impl Sought {
 
 /// Diagnoses the gap between a nominal simulator and records of one system.
 ///
-/// `seconds` is a stopwatch: it gives seconds since any moment. Costs are linear in the number of samples up to
-/// 20,000; of more, every so many are taken or whole segments are left out, and the answer states the share used. The
-/// same input gives the same bits with any number of threads (times apart).
+/// `seconds` is a stopwatch: it returns seconds since any fixed moment. The cost is linear in the number of
+/// samples up to 20,000. Beyond that, samples or whole segments are left out, and the answer states the share
+/// used. The same input gives the same bits with any number of threads (times apart).
 ///
-/// `simulator` is the nominal oscillator, alone or with effects that it has already: these are part of every hypothesis
-/// and no candidates.
+/// `simulator` is the nominal oscillator, alone or with known effects: these are part of every hypothesis and
+/// are not candidates.
 ///
 /// # Errors
-/// [`DiagnosisError`] for records that say nothing, or that are not of this system.
+/// [`DiagnosisError`] for records without usable information, or records of another system.
 pub fn diagnose(
     records: &[Observations],
     simulator: impl Into<NominalSimulator>,
@@ -102,11 +105,11 @@ pub fn diagnose(
     diagnose_watched(records, simulator, settings, seconds, &|_| true)
 }
 
-/// Diagnoses as [`diagnose`] does. `goes_on` is called after each stage but the last with the stage's name, and ends the diagnosis
-/// where it gives false.
+/// Diagnoses as [`diagnose`] does, with a callback. `goes_on` is called with the stage's name after each
+/// stage but the last; if it returns `false`, the diagnosis ends.
 ///
 /// # Errors
-/// As [`diagnose`], and [`DiagnosisError::Interrupted`].
+/// The errors of [`diagnose`], and [`DiagnosisError::Interrupted`].
 pub fn diagnose_watched(
     records: &[Observations],
     simulator: impl Into<NominalSimulator>,
@@ -154,8 +157,8 @@ mod tests {
     use record::{Clock, ClockChoice, Quantity, Record};
     use seed::Seed;
 
-    /// What is said of a spring that stiffens, under chirps of some forces that are logged exactly: the names, and the repaired
-    /// simulator's error over the noise.
+    /// Diagnoses a stiffening spring under chirps of the given forces, logged exactly. Returns the names, and
+    /// the repaired simulator's error over the noise.
     fn chirped(forces: &[f64]) -> (Vec<&'static str>, f64) {
         let nominal = Nominal::new(0.5, 0.4, 80.0, 0.0).unwrap();
         let nominal = nominal.with_coordinate(Coordinate::Displacement);
@@ -180,8 +183,8 @@ mod tests {
         (answer.verdict.effects, answer.gap.repaired / answer.gap.noise_floor.value)
     }
 
-    /// Without its bend the recalibrated simulator comes closer where the input is kept between its samples, and half an interval of
-    /// delay would then have to be explained.
+    /// Without the cubic term, the recalibrated simulator comes closer if the input is held between its
+    /// samples, and half an interval of delay would then have to be explained.
     #[test]
     fn what_the_input_does_between_its_samples_is_asked_beside_the_effects() {
         let (names, ratio) = chirped(&[0.4]);
@@ -189,9 +192,9 @@ mod tests {
         assert!(ratio < 1.1, "{ratio}");
     }
 
-    /// A torque that is held between its samples, on a swing with a drag. The recalibrated simulator, which lacks the drag, comes
-    /// closer where the torque goes straight; half an interval of delay then makes up for it, and the drag without a delay is not what
-    /// came closest.
+    /// A torque that is held between its samples drives a swing with drag. The recalibrated simulator, which
+    /// lacks the drag, comes closer if the torque is linear between its samples. Half an interval of delay
+    /// then makes up for it, and the closest set is not the drag without a delay.
     #[test]
     fn a_held_input_is_no_delay() {
         let nominal = Nominal::new(5e-4, 1.9e-4, 0.24, 0.0).unwrap();
@@ -212,8 +215,8 @@ mod tests {
         assert_eq!(answer.verdict.effects, ["quadratic_drag"]);
     }
 
-    /// The linear oscillator that comes closest is one that the input does not move: no set begun there arrives, and an input that
-    /// has as few knots as it allows bends those that do.
+    /// The closest linear oscillator is one that the input does not move: no set begun there converges. An
+    /// input with as few knots as this oscillator allows distorts the sets that do.
     #[test]
     fn a_spring_whose_bend_outweighs_it_is_found_under_an_input() {
         let (names, ratio) = chirped(&[6.0, 9.0]);

@@ -1,63 +1,63 @@
-//! What keeps a record from being diagnosed.
+//! Errors of a diagnosis.
 
 use dynamics::DynamicsError;
 use thiserror::Error;
 
-/// A record that cannot be diagnosed, with what was found and what to do.
+/// Reason why records cannot be diagnosed. The message says what was found and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DiagnosisError {
-    /// Nothing to diagnose.
+    /// There is no record.
     #[error("there is no record; give at least one")]
     NoRecord,
-    /// Too few samples.
+    /// The record has too few samples.
     #[error(
         "record {record} has {found} samples; a diagnosis needs at least {needed}. Record longer, or faster"
     )]
     TooFewSamples {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
-        /// Samples found.
+        /// Number of samples found.
         found: usize,
-        /// Samples needed.
+        /// Number of samples needed.
         needed: usize,
     },
-    /// Too few cycles of a free decay.
+    /// The record has too few cycles of the swing.
     #[error(
         "record {record} shows {found:.1} cycles of about {period_s:.4} s; a diagnosis needs at least {needed}. \
          Record longer, or release from farther out"
     )]
     TooFewCycles {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
-        /// Cycles found.
+        /// Number of cycles found.
         found: f64,
-        /// Cycles needed.
+        /// Number of cycles needed.
         needed: f64,
-        /// The nominal period in seconds.
+        /// Nominal period in seconds.
         period_s: f64,
     },
-    /// Values that do not change, or by no more than the sensor resolves.
+    /// The values do not change, or by no more than the sensor resolves.
     #[error(
         "record {record} does not move: {}. Check the column, or release from farther out",
         still(*.span, *.resolution, .unit)
     )]
     NoMotion {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
         /// Largest minus smallest value.
         span: f64,
-        /// What the sensor resolves; 0 where unknown.
+        /// Resolution of the sensor in the unit of the values; 0 if unknown.
         resolution: f64,
         /// Unit of the values.
         unit: &'static str,
     },
-    /// A drive without a spring, or any driven system, without its input.
+    /// The record has no input, and the nominal simulator has no restoring torque that could move it.
     #[error(
         "record {record} has no input column, but the nominal system has no spring: without its input nothing \
          moves it. Name the input's column"
     )]
     MissingInput {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
     },
     /// The record swings at another frequency than the nominal simulator.
@@ -67,55 +67,55 @@ pub enum DiagnosisError {
          nominal inertia and stiffness{}", known_factor(*ratio)
     )]
     AnotherPeriod {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
-        /// The nominal period in seconds.
+        /// Nominal period in seconds.
         nominal_s: f64,
-        /// The measured period in seconds.
+        /// Measured period in seconds.
         measured_s: f64,
-        /// The larger over the smaller.
+        /// Ratio of the larger to the smaller period.
         ratio: f64,
     },
-    /// Angles too large to be radians.
+    /// The angles are too large to be radians.
     #[error(
         "record {record} swings out to {largest:.1} rad, {turns:.1} full turns, about a spring: these look like \
          degrees. Set unit = \"deg\""
     )]
     LooksLikeDegrees {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
         /// Largest distance from the middle, in the unit taken to be radians.
         largest: f64,
-        /// The same in turns.
+        /// The same distance in turns.
         turns: f64,
     },
-    /// Records of one system that observe different quantities.
+    /// The records observe different quantities or have different units.
     #[error(
         "record {record} observes another quantity, or in another unit, than record 1; diagnose them apart"
     )]
     MixedQuantities {
-        /// Which record, from 1.
+        /// Number of the record, from 1.
         record: usize,
     },
     /// The caller asked to stop.
     #[error("interrupted after the stage `{stage}`; nothing was answered")]
     Interrupted {
-        /// The last stage that was done.
+        /// Last stage that was completed.
         stage: &'static str,
     },
-    /// The nominal simulator cannot be fitted to the record at all.
+    /// The nominal simulator cannot be fitted to the record.
     #[error("the nominal simulator cannot be fitted to the record: {reason}")]
     NotFitted {
-        /// What went wrong.
+        /// Reason, as text.
         reason: String,
     },
-    /// The dynamics refuse.
+    /// Error of the dynamics.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
 }
 
-/// The mistake that a factor between two periods is known for. Periods of one system differ by a few percent at most, so a
-/// tenth to either side leaves room for that.
+/// Returns a hint at a known mistake that causes a factor between two periods. Periods of one system differ
+/// by a few percent at most; a tolerance of a tenth to either side covers that.
 fn known_factor(ratio: f64) -> &'static str {
     let near = |factor: f64| (ratio / factor - 1.0).abs() < 0.1;
     match () {
@@ -137,7 +137,7 @@ fn known_factor(ratio: f64) -> &'static str {
     }
 }
 
-/// How little the values of a record move.
+/// Describes how little the values of a record change.
 fn still(span: f64, resolution: f64, unit: &str) -> String {
     if span == 0.0 {
         return "all its values are the same".to_owned();

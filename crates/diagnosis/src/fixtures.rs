@@ -1,4 +1,4 @@
-//! Records as a logger would have them, for tests and benchmarks.
+//! Simulated records as a logger would write them, for tests and benchmarks.
 
 use dynamics::chain::Chain;
 use dynamics::reference::{Tolerance, simulate};
@@ -6,8 +6,8 @@ use dynamics::{Coordinate, Start, System};
 use record::{Quantity, Record};
 use seed::Seed;
 
-/// A swing of a system that is released at an angle in rad, so many samples of it, 260 a second, through a measuring
-/// chain.
+/// Returns a record of a system released at an angle in rad, with `samples` samples at 260 Hz, through a
+/// measurement chain.
 pub(crate) fn record(system: &System, release: f64, samples: u32, chain: &Chain, seed: u64) -> Record {
     let times: Vec<f64> = (0..samples).map(|i| f64::from(i) / 260.0).collect();
     let motion = simulate(system, Start::release(release), None, &times, &Tolerance::default()).unwrap();

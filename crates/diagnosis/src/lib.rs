@@ -1,17 +1,18 @@
-//! Where the gap between a record and a nominal simulator lies, which unmodeled effect causes it, and how far it
-//! shrinks once that effect is added.
+//! Diagnosis of the gap between records and a nominal simulator: the place of the gap, the unmodeled effects
+//! that cause it, and how far it shrinks once these effects are added.
 //!
-//! Blind by construction: all that goes in is [`Observations`] (times by a believed clock, values, input) and
-//! the nominal simulator; what made the record cannot be reached from here. [`diagnose`] gives a
-//! [`Diagnosis`].
+//! The diagnosis is blind by construction: its only inputs are [`Observations`] (times by a believed clock,
+//! values, input) and the nominal simulator. It has no access to the source of a record. [`diagnose`] returns
+//! a [`Diagnosis`].
 //!
-//! # How
-//! 1. Records are cut into segments of about six periods, each with a start state of its own (`data`).
-//! 2. The nominal simulator is fitted as it is and recalibrated (`fit`).
-//! 3. Every candidate's first-order effect on the observed values, at many shapes, is projected on what calibration and start
-//!    states cannot imitate (`model`); what the best of them gains by chance is drawn (`search::null`).
-//! 4. Sets of a few are searched and fitted in full (`search`), scored by tempered evidence, and have to predict held-out
-//!    segments; a free latent torque says what is left without a name (`evidence`).
+//! # Method
+//! 1. Records are cut into segments of about six periods, each with its own start state (`data`).
+//! 2. The nominal simulator is fitted as it is, and recalibrated (`fit`).
+//! 3. The first-order effect of every candidate on the observed values, at many shapes, is projected on what
+//!    calibration and start states cannot imitate (`model`). The largest gain by chance is estimated from
+//!    random draws (`search::null`).
+//! 4. Sets of a few candidates are searched and fitted in full (`search`), scored by tempered evidence, and
+//!    tested on held-out segments. A free latent torque shows what is left without a name (`evidence`).
 //! 5. Shares, maps, rivals and the next experiment follow (`explain`).
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]

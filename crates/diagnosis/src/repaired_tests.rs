@@ -1,4 +1,4 @@
-//! A system diagnosed with its own repaired simulator.
+//! Diagnosis of a system with its own repaired simulator.
 
 use crate::{Diagnosis, Observations, Settings, Status, diagnose};
 use dynamics::reference::{Tolerance, simulate};
@@ -11,13 +11,13 @@ use seed::Seed;
 
 const NOISE: f64 = 1e-3;
 
-/// 7 Hz/2 and a damping ratio of 0.006.
+/// Nominal simulator with a frequency of 7 Hz/2 and a damping ratio of 0.006.
 fn nominal() -> Nominal {
     let omega = 7.0 * std::f64::consts::PI;
     Nominal::new(1.0, 2.0 * 0.006 * omega, omega * omega, 0.0).unwrap()
 }
 
-/// A system's record, 130 samples a second; a driven one starts at rest.
+/// Returns a record of a system, 130 samples a second; a driven one starts at rest.
 fn record(system: &System, release: f64, seconds: f64, is_driven: bool, seed: u64) -> Observations {
     let times: Vec<f64> = (0..(seconds * 130.0) as usize).map(|i| i as f64 / 130.0).collect();
     // A chirp from below the resonance to above it.
@@ -36,7 +36,7 @@ fn answer(observations: &Observations, simulator: &NominalSimulator) -> Diagnosi
     diagnose(std::slice::from_ref(observations), simulator, &Settings::default(), &|| 0.0).unwrap()
 }
 
-/// The repaired simulator as a nominal one.
+/// Returns the repaired simulator as a nominal one.
 fn repaired(answer: &Diagnosis, recalibrate: bool) -> NominalSimulator {
     let effects = answer.repaired.effects.iter().map(|&active| KnownEffect { active, recalibrate });
     NominalSimulator::new(answer.repaired.nominal, effects.collect()).unwrap()
@@ -65,8 +65,8 @@ fn a_repaired_simulator_lacks_nothing() {
     }
 }
 
-/// The owner of a pendulum has its weight in his simulator; there is no spring. Its size is off, and something else is
-/// missing.
+/// The simulator of a pendulum has its weight and no spring. The size of the weight is off, and something
+/// else is missing.
 #[test]
 fn what_a_simulator_has_is_recalibrated_and_never_missing() {
     let bare = Nominal::new(1.0, 0.2, 0.0, 0.0).unwrap();
@@ -85,14 +85,14 @@ fn what_a_simulator_has_is_recalibrated_and_never_missing() {
     let torque = &friction.known[0].repaired[0];
     assert_eq!(torque.name, "torque");
     assert!((torque.estimate.value - 400.0).abs() < 1.0, "{torque:?}");
-    // A weight that is held is not moved, and what it is off by has to be something else's.
+    // A weight that is held is not moved, and other effects have to absorb its error.
     let held = NominalSimulator::new(bare, known("gravity", &[370.0, 0.0], false)).unwrap();
     let wrong = answer(&of(1), &held);
     assert!(wrong.gap.recalibrated > 5.0 * calibrated.gap.recalibrated, "{:?}", wrong.gap);
     assert_eq!(wrong.repaired.effects[0].values(), [370.0, 0.0]);
 }
 
-/// What beside friction that is known is friction of another kind.
+/// The gap beside known friction is friction of another kind.
 #[test]
 fn known_friction_may_be_of_another_kind() {
     let active = vec![Active::new("stribeck_friction", &[0.2, 1.0, 1.5]).unwrap()];
@@ -104,7 +104,7 @@ fn known_friction_may_be_of_another_kind() {
     assert!(system.is_ok(), "{system:?}");
 }
 
-/// A spring that is hardly there is relaxed anywhere.
+/// A very weak spring does not determine its rest angle.
 #[test]
 fn what_the_data_do_not_determine_is_left_as_it_was() {
     let drive = Nominal::new(1.0, 4.0, 0.0, 0.0).unwrap();
@@ -118,14 +118,15 @@ fn what_the_data_do_not_determine_is_left_as_it_was() {
     assert_eq!(found.repaired.nominal.rest_angle(), 0.3);
     assert!(found.repaired.undetermined.iter().any(|own| own.name == "rest_angle" && own.is_nominal));
     assert!((found.repaired.nominal.damping() - 4.0).abs() < 0.05);
-    // Where there is a spring, it is told where that is relaxed.
+    // With a real spring, the rest angle is determined.
     let swing = record(&System::new(nominal(), Vec::new()).unwrap(), 0.7, 15.0, false, 3);
     let found = answer(&swing, &(&nominal()).into());
     assert!(found.calibration.iter().all(|row| row.determined != Some(false)), "{:?}", found.calibration);
     assert!(found.repaired.undetermined.is_empty());
 }
 
-/// Every kind of effect in the equation of motion, at strengths that move the record by several times the noise.
+/// Every kind of effect in the equation of motion, at strengths that move the record by several times the
+/// noise.
 const KINDS: &[(&str, &[f64])] = &[
     ("coulomb_friction", &[0.4]),
     ("stribeck_friction", &[0.3, 1.2, 1.5]),
@@ -146,7 +147,7 @@ const KINDS: &[(&str, &[f64])] = &[
     ("unknown", &[0.5, 20.0, 0.7]),
 ];
 
-/// A kind of effect with a size over a factor of four, released over a factor of two.
+/// Draws a kind of effect with a size over a factor of four and a release over a factor of two.
 fn drawn(id: &str, values: &[f64], number: u64) -> (System, f64, bool) {
     let mut generator = Seed::new(11).child(id).child(&number.to_string()).generator();
     let mut draw = |low: f64, high: f64| -> f64 { generator.random_range(low..high) };
@@ -163,7 +164,8 @@ fn drawn(id: &str, values: &[f64], number: u64) -> (System, f64, bool) {
     (System::new(nominal(), vec![active]).unwrap(), release, id.starts_with("input"))
 }
 
-/// `cargo test --release -p diagnosis repaired_tests::every_kind -- --ignored --nocapture`; a kind alone with `KIND=id`.
+/// Run with `cargo test --release -p diagnosis repaired_tests::every_kind -- --ignored --nocapture`, for one
+/// kind with `KIND=id`.
 #[test]
 #[ignore = "minutes in a release build"]
 fn every_kind_diagnosed_with_its_own_repaired_simulator_lacks_nothing() {
@@ -197,7 +199,8 @@ fn every_kind_diagnosed_with_its_own_repaired_simulator_lacks_nothing() {
     println!("{} of {} leave no more than before", jobs.len() - larger.len(), jobs.len());
     for (id, _) in KINDS.iter().filter(|(id, _)| wanted(id)) {
         let own = larger.iter().filter(|line| line.starts_with(&format!("{id} "))).count();
-        // Where dry friction stops the swing, start states end in hollows of their own: up to 1 % more in two of ten.
+        // If dry friction stops the swing, start states end in local minima: up to 1 % more error in two of
+        // ten.
         let most = if id.ends_with("friction") { 2 } else { 0 };
         assert!(own <= most, "{id}: {larger:#?}");
     }

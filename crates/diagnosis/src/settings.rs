@@ -1,18 +1,19 @@
-//! What a caller may choose.
+//! Settings of a diagnosis.
 
 use seed::Seed;
 
-/// How to diagnose.
+/// Settings of a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Probability with which an effect is named where there is none; 0.001 to 0.2.
+    /// False-alarm probability of the search, 0.001 to 0.2: the probability that the gain of the best
+    /// candidate exceeds the search threshold by chance, if no effect is missing.
     pub false_alarm: f64,
-    /// Most effects named together, 1 to 5.
+    /// Largest number of effects in one fitted set, clamped to 1 to 5.
     pub most_effects: usize,
-    /// Ids of effects that are not considered: a vocabulary with holes, for whoever knows that an effect is
-    /// absent, and for trials of what is said where the cause has no name.
+    /// Ids of effects that are not considered, for callers who know that an effect is absent, and for trials
+    /// in which the cause has no name.
     pub without: Vec<String>,
-    /// Randomness of the bootstraps.
+    /// Seed of all random draws: the bootstraps and the null distribution.
     pub seed: Seed,
 }
 

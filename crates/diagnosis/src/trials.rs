@@ -77,7 +77,7 @@ fn shared(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name)
 }
 
-/// A measured record with its nominal simulator; `None`, with a word, where the data are not there.
+/// Reads a measured record and its nominal simulator; `None`, with a message, if the data are missing.
 fn measured(record: &str, nominal: &str, options: &ReadOptions) -> Option<(Observations, Nominal)> {
     if !shared(record).exists() {
         println!("skipped: {record} is not here");
@@ -146,7 +146,8 @@ fn nominal() -> Nominal {
     Nominal::new(1.0, 2.0 * 0.006 * OMEGA, OMEGA * OMEGA, 0.0).unwrap()
 }
 
-/// A record of a system: white noise, then a quantizer, then the sensor's own map where there is one.
+/// Simulates a record of a system: the sensor's own map, then white noise, then a quantizer if `step` is
+/// positive.
 fn record(
     system: &System,
     seconds: f64,
@@ -182,7 +183,7 @@ fn system(effects: &[(&str, &[f64])]) -> System {
     System::new(nominal(), active).unwrap()
 }
 
-/// Strengths that move the record by several times the noise of 1 mrad.
+/// Effects of the system, at strengths that move the record by several times the noise of 1 mrad.
 const CASES: &[(&str, &[f64])] = &[
     ("coulomb_friction", &[0.4]),
     ("stribeck_friction", &[0.3, 1.2, 1.5]),
@@ -233,7 +234,7 @@ fn clean_records_lack_nothing() {
     }
 }
 
-/// Effects of the measuring chain, each several times the noise of 1 mrad.
+/// Effects of the measurement chain, each several times the noise of 1 mrad.
 const CHAINS: &[(&str, &[f64])] = &[
     ("sensor_quantization", &[0.02]),
     ("sensor_saturation", &[0.55]),
@@ -246,7 +247,7 @@ const CHAINS: &[(&str, &[f64])] = &[
     ("outliers", &[0.01, 0.1]),
 ];
 
-/// A record through a measuring chain, read as a file's would be.
+/// Simulates a record through a measurement chain, with the values rounded as in a file.
 fn through(system: &System, release: f64, chain: &Chain, seed: u64) -> Observations {
     let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
     let motion = simulate(system, Start::release(release), None, &times, &Tolerance::default()).unwrap();
@@ -261,15 +262,15 @@ fn through(system: &System, release: f64, chain: &Chain, seed: u64) -> Observati
     Observations::new(&record, &clock)
 }
 
-/// What is hidden in a case, what the answer was, and whether it is right.
+/// Hidden effect of a case, the answer, and whether it is right.
 struct Outcome {
     hidden: &'static str,
     found: String,
     right: bool,
 }
 
-/// Ten records of each effect, of sizes over a factor of four, releases over a factor of two, nominal
-/// simulators off by up to 10 % in half of them; and a hundred without any effect.
+/// Diagnoses ten records of each effect, with sizes over a factor of four, releases over a factor of two, and
+/// nominal simulators off by up to 10 % in half of them, and a hundred records without any effect.
 fn bank(only: Option<&str>) -> Vec<Outcome> {
     let cases: Vec<(&'static str, &[f64])> = CASES.iter().chain(CHAINS).copied().collect();
     let wanted = |id: &str| only.is_none_or(|only| only == id);
@@ -288,7 +289,7 @@ fn bank(only: Option<&str>) -> Vec<Outcome> {
             let release = draw(0.45, 0.9);
             let is_chain = CHAINS.iter().any(|case| case.0 == hidden);
             let mut values = values.to_vec();
-            // The first parameter is the size of all but those whose first is a place or a time.
+            // The first parameter is the size, except for effects whose first parameter is a place or a time.
             let sized = !matches!(hidden, "end_stop" | "sensor_saturation" | "timestamp_batching" | "clock_drift");
             if let (Some(first), true) = (values.first_mut(), sized) {
                 *first *= size;

@@ -1,8 +1,8 @@
-//! What a motion costs: a 25 s record at 260 Hz of a 3.5 Hz oscillator released at 0.7 rad.
+//! Cost of a motion: a 25 s record at 260 Hz of a 3.5 Hz oscillator released at 0.7 rad.
 //!
 //!     cargo bench -p dynamics
 //!
-//! Every figure is checked against the reference integrator before it is timed.
+//! Every result is checked against the reference integrator before it is timed.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::indexing_slicing, reason = "a benchmark")]
 
@@ -59,7 +59,7 @@ fn with_cubic() -> System {
     System::new(*plain.nominal(), effects).unwrap()
 }
 
-/// Runs the model on the whole record and holds it against the reference.
+/// Runs the model on the whole record and compares it with the reference.
 fn checked(system: &System, free: &[Free]) -> (Model, Vec<f64>, Response) {
     let times = times();
     let exact = simulate(system, START, None, &times, &Tolerance::default()).unwrap();
@@ -90,7 +90,7 @@ fn ten_sensitivities(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| model.run_into(black_box(START.into()), None, &times, &mut response).unwrap());
 }
 
-/// The same record cut into segments of 4 periods, each from its own start: what multiple shooting asks for.
+/// The same record cut into segments of 4 periods, each with its own start, as for multiple shooting.
 #[divan::bench]
 fn ten_sensitivities_in_segments(bencher: Bencher<'_, '_>) {
     let (mut model, times, response) = checked(&with_cubic(), &ten());

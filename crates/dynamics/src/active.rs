@@ -1,4 +1,4 @@
-//! An effect with values for its parameters.
+//! Effect with values for its parameters.
 
 use crate::error::DynamicsError;
 use crate::law::{MOST_PARAMETERS, Values};
@@ -6,7 +6,7 @@ use crate::registry::Effect;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// An effect of the registry with values for its parameters, each within its range.
+/// Effect of the registry with values for its parameters, each within its range.
 ///
 /// In TOML: `{ id = "coulomb_friction", parameters = { torque = 7e-5 } }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -25,19 +25,20 @@ struct Raw {
 }
 
 impl Active {
-    /// An effect by its public id, with values in the order of its description.
+    /// Creates an effect from its public id, with values in the order of its description.
     ///
     /// # Errors
-    /// [`DynamicsError::UnknownEffect`], [`DynamicsError::WrongNumberOfValues`], or
+    /// Returns [`DynamicsError::UnknownEffect`], [`DynamicsError::WrongNumberOfValues`], or
     /// [`DynamicsError::OutOfRange`].
     pub fn new(id: &str, values: &[f64]) -> Result<Self, DynamicsError> {
         Self::of(Effect::find(id)?, values)
     }
 
-    /// An effect with values in the order of its description; the last ones may be left out where they have a default.
+    /// Creates an effect with values in the order of its description. The last values may be omitted if they
+    /// have a default.
     ///
     /// # Errors
-    /// [`DynamicsError::WrongNumberOfValues`] or [`DynamicsError::OutOfRange`].
+    /// Returns [`DynamicsError::WrongNumberOfValues`] or [`DynamicsError::OutOfRange`].
     pub fn of(effect: Effect, values: &[f64]) -> Result<Self, DynamicsError> {
         let description = effect.description();
         let needed = description.parameters.iter().filter(|parameter| parameter.default.is_none()).count();
@@ -66,10 +67,10 @@ impl Active {
         Ok(Self { effect, values: own })
     }
 
-    /// An effect by its public id, with values by name.
+    /// Creates an effect from its public id, with values by name.
     ///
     /// # Errors
-    /// [`DynamicsError::UnknownEffect`], [`DynamicsError::UnknownParameter`],
+    /// Returns [`DynamicsError::UnknownEffect`], [`DynamicsError::UnknownParameter`],
     /// [`DynamicsError::MissingParameter`], or [`DynamicsError::OutOfRange`].
     pub fn named(id: &str, parameters: &[(&str, f64)]) -> Result<Self, DynamicsError> {
         let effect = Effect::find(id)?;
@@ -100,19 +101,19 @@ impl Active {
         Self::of(effect, &values)
     }
 
-    /// The effect.
+    /// Returns the effect.
     #[must_use]
     pub fn effect(&self) -> Effect {
         self.effect
     }
 
-    /// The public id.
+    /// Returns the public id.
     #[must_use]
     pub fn id(&self) -> &'static str {
         self.effect.id()
     }
 
-    /// The values, in the order and the units of the description's parameters.
+    /// Returns the values, in the order and the units of the description's parameters.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         let count = self.effect.description().parameters.len();
@@ -120,7 +121,8 @@ impl Active {
         self.values.get(..count).unwrap_or(&self.values)
     }
 
-    /// The value of a parameter by its name, in the unit of the description; `None` where the effect has none of that name.
+    /// Returns the value of a parameter by its name, in the unit of the description; `None` if the effect has
+    /// no such parameter.
     #[must_use]
     pub fn value(&self, parameter: &str) -> Option<f64> {
         let index = self.effect.description().parameter_index(parameter)?;

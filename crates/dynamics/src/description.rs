@@ -1,17 +1,17 @@
-//! What is known about an effect, as data.
+//! Descriptions of effects as data.
 
 use crate::units::Quantity;
 
-/// Where an effect acts.
+/// Part of the simulation in which an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// In the system: it changes the motion.
     System,
-    /// In the measuring chain: it changes what the file says about the motion.
+    /// In the measurement chain: it changes what the file says about the motion.
     MeasuringChain,
 }
 
-/// The part of a gap budget that an effect belongs to.
+/// Class of the gap budget that an effect belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Class {
     /// Takes energy out of the motion; depends on its direction.
@@ -26,14 +26,14 @@ pub enum Class {
     Clock,
 }
 
-/// The values that a parameter may take.
+/// Range of values that a parameter may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Lower end.
     pub minimum: f64,
     /// Upper end.
     pub maximum: f64,
-    /// True if the ends themselves are admitted.
+    /// `true` if the ends themselves are included.
     pub closed: bool,
 }
 
@@ -44,11 +44,11 @@ impl Range {
     pub const POSITIVE: Self = Self { minimum: 0.0, maximum: f64::INFINITY, closed: false };
     /// 0 or above.
     pub const NON_NEGATIVE: Self = Self { minimum: 0.0, maximum: f64::INFINITY, closed: true };
-    /// Any finite angle up to a full turn either way.
+    /// Any finite angle up to a full turn in either direction.
     pub const TURN: Self =
         Self { minimum: -std::f64::consts::TAU, maximum: std::f64::consts::TAU, closed: true };
 
-    /// Returns whether a finite value lies inside.
+    /// Returns `true` if a value is finite and inside the range.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         let inside = if self.closed {
@@ -74,7 +74,7 @@ impl std::fmt::Display for Range {
     }
 }
 
-/// One parameter of an effect.
+/// Parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
     /// Name in configurations and results, such as `torque`.
@@ -87,43 +87,44 @@ pub struct Parameter {
     pub range: Range,
     /// Meaning, a phrase.
     pub meaning: &'static str,
-    /// Its value where none is given; `None` where one has to be. Only the last parameters of an effect have one.
+    /// Value if none is given; `None` if a value is required. Only the last parameters of an effect have a
+    /// default.
     pub default: Option<f64>,
 }
 
-/// Description of an effect, which simulator, diagnosis, documents and listings read alike.
+/// Description of an effect, shared by simulator, diagnosis, documents and listings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Description {
-    /// The public id, such as `coulomb_friction`.
+    /// Public id, such as `coulomb_friction`.
     pub id: &'static str,
-    /// A title for tables.
+    /// Title for tables.
     pub title: &'static str,
-    /// Where it acts.
+    /// Part of the simulation in which the effect acts.
     pub kind: Kind,
-    /// Its part of a gap budget.
+    /// Class of the gap budget.
     pub class: Class,
-    /// Torque or change that it adds, as plain text.
+    /// Torque or change that the effect adds, as plain text.
     pub equation: &'static str,
     /// Equation in LaTeX.
     pub latex: &'static str,
-    /// Its parameters, in the order in which values are given; at most [`crate::MOST_PARAMETERS`].
+    /// Parameters, in the order in which values are given; at most [`crate::MOST_PARAMETERS`].
     pub parameters: &'static [Parameter],
     /// Signature in a free decay, or under drive.
     pub tell_tale: &'static str,
     /// Ids of effects that it is easily confused with when the data are poor.
     pub confused_with: &'static [&'static str],
-    /// The literature.
+    /// Literature.
     pub reference: &'static str,
-    /// True if it acts only where there is an input.
+    /// `true` if the effect acts only with an input.
     pub driven_only: bool,
-    /// Number of hidden state variables that it brings.
+    /// Number of hidden state variables of the effect.
     pub hidden_states: usize,
-    /// True if its law has a continuous derivative everywhere: no switching.
+    /// `true` if the law has a continuous derivative everywhere: no switching.
     pub smooth: bool,
 }
 
 impl Description {
-    /// The position of a parameter in the order of values.
+    /// Returns the position of a parameter in the order of values; `None` if there is no such parameter.
     #[must_use]
     pub fn parameter_index(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|parameter| parameter.name == name)

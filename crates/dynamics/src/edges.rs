@@ -1,23 +1,23 @@
-//! The edges of a smooth piece: where the law of some effect changes.
+//! Edges of a smooth piece, at which the law of an effect changes.
 
 use crate::field::{Field, Mode, State};
 use crate::scalar::Scalar;
 
-/// One edge of the present smooth piece.
+/// Edge of the present smooth piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Edge {
     /// The velocity changes its sign.
     Reversal,
-    /// The torque exceeds what dry friction holds, toward positive or negative positions.
+    /// The torque exceeds the holding torque of dry friction, toward positive or negative positions.
     BreakAway {
-        /// Whether toward positive positions.
+        /// `true` toward positive positions.
         forward: bool,
     },
     /// An effect leaves its region.
     Region {
-        /// Number of the effect in the system.
+        /// Index of the effect in the system.
         term: usize,
-        /// Which edge of the region, 0 or 1.
+        /// Edge of the region, 0 or 1.
         edge: usize,
     },
 }
@@ -50,7 +50,7 @@ impl<S: Scalar> Field<S> {
         }
     }
 
-    /// The signed distance to one edge; `None` where the present piece does not have it.
+    /// Returns the signed distance to one edge; `None` if the present piece does not have it.
     pub(crate) fn distance(&self, directed: bool, state: &State<S>, mode: &Mode, edge: Edge) -> Option<S> {
         let mut found = None;
         self.edges(directed, state, mode, |other, margin| {
@@ -63,7 +63,7 @@ impl<S: Scalar> Field<S> {
 }
 
 impl Field<f64> {
-    /// The mode behind an edge. At a reversal the velocity has to be exactly zero.
+    /// Returns the mode behind an edge. At a reversal the velocity has to be exactly zero.
     pub(crate) fn behind(&self, state: &State<f64>, mode: &Mode, edge: Edge) -> Mode {
         match edge {
             Edge::Reversal => self.mode(state),

@@ -1,134 +1,134 @@
-//! What can be wrong with a system or a simulation.
+//! Errors of a system or a simulation.
 
 use crate::description::Range;
 use thiserror::Error;
 
-/// A system that cannot be, or a motion that cannot be computed.
+/// Error for an invalid system, or for a motion that cannot be computed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DynamicsError {
-    /// A nominal coefficient outside its range.
+    /// A nominal coefficient is outside its range.
     #[error("nominal `{parameter}` is {value}; expected {range}")]
     NominalOutOfRange {
-        /// The coefficient's name.
+        /// Name of the coefficient.
         parameter: &'static str,
-        /// Its value.
+        /// Value of the coefficient.
         value: f64,
-        /// What is admitted.
+        /// Admissible range.
         range: Range,
     },
-    /// An id that is not in the registry.
+    /// An id is not in the registry.
     #[error("unknown effect `{id}`; known are {}", known.join(", "))]
     UnknownEffect {
-        /// The id as given.
+        /// Id as given.
         id: String,
         /// Every known id.
         known: Vec<&'static str>,
     },
-    /// A parameter that the effect does not have.
+    /// A parameter is unknown to the effect.
     #[error("`{effect}` has no parameter `{parameter}`; it has {}", known.join(", "))]
     UnknownParameter {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// The name as given.
+        /// Name as given.
         parameter: String,
-        /// The parameters it has.
+        /// Names of the effect's parameters.
         known: Vec<&'static str>,
     },
-    /// A parameter without a value.
+    /// A parameter has no value.
     #[error("`{effect}` lacks its parameter `{parameter}` ({meaning}); expected {range}")]
     MissingParameter {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// The parameter's name.
+        /// Name of the parameter.
         parameter: &'static str,
-        /// What it means.
+        /// Meaning of the parameter.
         meaning: &'static str,
-        /// What is admitted.
+        /// Admissible range.
         range: Range,
     },
-    /// The wrong number of values.
+    /// The number of values is wrong.
     #[error("`{effect}` takes {expected} values, not {found}")]
     WrongNumberOfValues {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// How many parameters it has.
+        /// Number of the effect's parameters.
         expected: usize,
-        /// How many values were given.
+        /// Number of values given.
         found: usize,
     },
-    /// A parameter outside its range.
+    /// A parameter is outside its range.
     #[error("`{effect}`: `{parameter}` is {value}; expected {range}")]
     OutOfRange {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// The parameter's name.
+        /// Name of the parameter.
         parameter: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
-        /// What is admitted.
+        /// Admissible range.
         range: Range,
     },
-    /// Two parameters that contradict each other.
+    /// Two parameters contradict each other.
     #[error("`{effect}`: `{parameter}` is {value}, but must be {relation} {bound} ({reason})")]
     Contradiction {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// The parameter's name.
+        /// Name of the parameter.
         parameter: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
-        /// The relation demanded, such as `at least`.
+        /// Required relation, such as `at least`.
         relation: &'static str,
-        /// The number it is compared with.
+        /// Number that the value is compared with.
         bound: f64,
-        /// What that number is.
+        /// Meaning of that number.
         reason: &'static str,
     },
-    /// One effect twice.
+    /// An effect is given twice.
     #[error("`{effect}` is given twice; combine the two into one")]
     Duplicate {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
     },
-    /// An effect of the measuring chain where one of the system is expected.
+    /// An effect of the measurement chain is given where one of the system is expected.
     #[error(
         "`{effect}` belongs to the measurement chain and does not change the motion; apply it to the samples"
     )]
     NotInTheSystem {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
     },
-    /// An effect in the system where one of the measuring chain is expected.
+    /// An effect of the system is given where one of the measurement chain is expected.
     #[error("`{effect}` changes the motion and does not belong to the measurement chain")]
     NotInTheChain {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
     },
-    /// A sensor on which the effect has no meaning.
+    /// The effect has no meaning for this sensor.
     #[error("`{effect}` needs {needs}")]
     NotForThisSensor {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// What it needs.
+        /// Requirement of the effect.
         needs: &'static str,
     },
-    /// A standard deviation of noise that is none.
+    /// The standard deviation of the noise is invalid.
     #[error("the sensor's noise is {value}; expected a finite number of 0 or above")]
     BadNoise {
-        /// The standard deviation as given.
+        /// Standard deviation as given.
         value: f64,
     },
-    /// Columns of a sampled motion that do not belong together.
+    /// The columns of a sampled motion differ in length.
     #[error("the sampled {what} holds {found} numbers for {times} times; expected one each, at least two")]
     UnequalLengths {
-        /// The column.
+        /// Name of the column.
         what: &'static str,
-        /// Its length.
+        /// Length of the column.
         found: usize,
         /// Number of times.
         times: usize,
     },
-    /// A release from rest inside the dead zone: the spring does not pull.
+    /// A release from rest is inside the dead zone, where the spring does not pull.
     #[error(
         "the dead zone of `backlash`, ±{half_width}, is wider than the release, {release} from the rest \
          angle: nothing would move. Release from farther out or narrow the dead zone"
@@ -139,66 +139,66 @@ pub enum DynamicsError {
         /// Distance of the release from the rest angle.
         release: f64,
     },
-    /// An input that is no function of time.
+    /// An input is not a function of time.
     #[error("the input's {what} at index {index}: {value}; {remedy}")]
     BadInput {
-        /// What is wrong.
+        /// Number that is wrong.
         what: &'static str,
-        /// Where, from 0.
+        /// Index of the sample, from 0.
         index: usize,
-        /// The number there.
+        /// Number at that index.
         value: f64,
-        /// What to do.
+        /// Advice that makes the input valid.
         remedy: &'static str,
     },
-    /// Times that do not increase, or are not finite.
+    /// Times decrease, or are not finite.
     #[error("time {index} is {value} s; times must be finite and never decrease")]
     BadTimes {
-        /// Position in the list, from 0.
+        /// Index in the list, from 0.
         index: usize,
-        /// The time there, in seconds.
+        /// Time at that index, in seconds.
         value: f64,
     },
-    /// A start state that is not finite.
+    /// A start state is not finite.
     #[error("the start's {what} is {value}; it must be finite")]
     BadStart {
-        /// Which part of the state.
+        /// Part of the state: `position` or `velocity`.
         what: &'static str,
-        /// Its value.
+        /// Value of that part.
         value: f64,
     },
-    /// A parameter named as free that the system does not have.
+    /// A parameter is named as free that the system does not have.
     #[error("`{parameter}` cannot be free: {reason}")]
     NotFree {
-        /// The parameter as named.
+        /// Parameter as named.
         parameter: String,
-        /// Why it is not to be had.
+        /// Reason why it cannot be free.
         reason: &'static str,
     },
-    /// The motion runs away.
+    /// The motion diverges.
     #[error(
         "the motion diverges at {time_s} s (position {position}): is there a negative stiffness without a stop?"
     )]
     Diverged {
-        /// When, in seconds.
+        /// Time of the divergence, in seconds.
         time_s: f64,
-        /// Where, in the coordinate's unit.
+        /// Position at that time, in the coordinate's unit.
         position: f64,
     },
     /// The step would have to be smaller than rounding allows.
     #[error("at {time_s} s the step shrinks to {step_s} s without reaching the tolerance; loosen it")]
     StepTooSmall {
-        /// When, in seconds.
+        /// Start of the step, in seconds.
         time_s: f64,
-        /// The step tried, in seconds.
+        /// Length of the step tried, in seconds.
         step_s: f64,
     },
-    /// The work allotted is spent.
+    /// The maximum number of steps is used up.
     #[error("{steps} steps reach only {time_s} s; loosen the tolerance, or raise the bound on the steps")]
     TooManySteps {
-        /// Steps taken.
+        /// Number of steps taken.
         steps: usize,
-        /// The time reached, in seconds.
+        /// Time reached, in seconds.
         time_s: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! Events that are hard to see, in both integrators.
+//! Events that are hard to detect, in both integrators.
 
 use crate::fixtures::{difference, grid, with};
 use crate::reference::{Happening, Motion, Tolerance, simulate};
@@ -21,8 +21,8 @@ fn by_series(system: &System, start: Start, times: &[f64], tolerance: f64) -> Re
 
 #[test]
 fn a_visit_to_the_stop_shorter_than_a_step_is_not_missed() {
-    // Regression: the reference looked at the nodes of its steps only. Without loss every swing comes back to the
-    // stop, to the same depth beyond it; a visit lasts between a fortieth and a third of a step.
+    // Regression: the reference looked only at the nodes of its steps. Without loss every swing comes back to
+    // the stop, to the same depth beyond it; a visit lasts between a fortieth and a third of a step.
     let times = grid(3.0, 260.0);
     for depth in [1e-6, 1e-5, 1e-4, 1e-3] {
         let system = with(undamped(), &[("end_stop", &[-0.7 + depth, 2e5, 0.0])]);
@@ -31,7 +31,7 @@ fn a_visit_to_the_stop_shorter_than_a_step_is_not_missed() {
             let motion = by_reference(&system, start, &times, relative);
             let response = by_series(&system, start, &times, relative);
             let contacts = motion.events.len();
-            // Ten and a half periods, a way in and a way out in each.
+            // Ten and a half periods, each with an entry and an exit.
             assert!((20..=22).contains(&contacts), "{depth:e} {relative:e}: {contacts}");
             assert_eq!(response.events, contacts, "{depth:e} {relative:e}");
             assert!(difference(&response.position, &motion.position) < 1e4 * relative);
@@ -41,8 +41,8 @@ fn a_visit_to_the_stop_shorter_than_a_step_is_not_missed() {
 
 #[test]
 fn what_breaks_away_slowly_gets_under_way() {
-    // A break-away begins with an excess torque of rounding only: it must neither look like a reversal nor be
-    // disbelieved, at whatever tolerance.
+    // A break-away begins with an excess torque that is mere rounding. At any tolerance it must neither look
+    // like a reversal nor be rejected.
     let nominal = Nominal::new(1.0, 0.015_978_212_424_646_535, 484.0, 0.005_668_251_830_754_811).unwrap();
     let effects: &[(&str, &[f64])] = &[
         ("stribeck_friction", &[12.817_984_421_130_23, 21.090_230_131_449_058, 0.212_827_681_809_169_03]),
@@ -76,7 +76,7 @@ fn a_torque_that_just_reaches_the_hold_moves_nothing() {
         let motion = by_reference(&system, start, &times, 1e-12);
         let response = by_series(&system, start, &times, 1e-10);
         assert!(motion.position.iter().chain(&response.position).all(|position| *position == 0.0));
-        // Equal to rounding it may slip, but not far.
+        // With equality to rounding the body may slip, but not far.
         let system = with(undamped(), &[("coulomb_friction", &[hold]), ("periodic_forcing", &forcing)]);
         let motion = by_reference(&system, start, &times, 1e-12);
         let response = by_series(&system, start, &times, 1e-10);
@@ -87,7 +87,7 @@ fn a_torque_that_just_reaches_the_hold_moves_nothing() {
 
 #[test]
 fn from_rest_in_balance_a_fast_forcing_is_resolved() {
-    // Regression: with a state of zero the first step took the oscillator's own pace for its scale.
+    // Regression: with a state of zero the first step was scaled by the oscillator's own frequency.
     for frequency in [300.0, 2_000.0, 20_000.0_f64] {
         let system = with(undamped(), &[("periodic_forcing", &[5.0, frequency, 0.4])]);
         let times = grid(0.2, 5_000.0);
@@ -106,7 +106,7 @@ fn from_rest_in_balance_a_fast_forcing_is_resolved() {
 
 #[test]
 fn a_motion_that_runs_away_says_so() {
-    // Regression: rates that were no numbers passed for converged stages.
+    // Regression: stages with rates that were not numbers passed as converged.
     let start = Start { position: 1.2, velocity: 3.0 };
     for effect in [("cubic_stiffness", -480.0), ("asymmetric_stiffness", -480.0), ("cubic_stiffness", -1e300)]
     {

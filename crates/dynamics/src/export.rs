@@ -1,6 +1,6 @@
-//! What an effect looks like in other simulators.
+//! Effects as code for other simulators.
 
-/// An effect as pieces of code.
+/// Effect as pieces of code.
 ///
 /// Expressions are written so that Python and Modelica read them alike: `+ - * /`, parentheses, and `sin`,
 /// `exp`, `abs`, `min`, `max`, `sign`. They may use `time`, `position`, `velocity`, `direction` (the sign of
@@ -8,35 +8,35 @@
 /// and in braces the effect's own parameters and hidden states: `{torque}`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Export {
-    /// The torque that it adds; none where it acts otherwise, as a delay of the input does.
+    /// Torque that the effect adds; `None` if it acts otherwise, as a delay of the input does.
     pub torque: Option<&'static str>,
-    /// Its hidden states.
+    /// Hidden states of the effect.
     pub states: &'static [StateExport],
-    /// Attribute of a joint in a robot's description.
+    /// Attribute of a joint in a robot description.
     pub joint: Joint,
 }
 
-/// A hidden state as code.
+/// Hidden state as code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StateExport {
-    /// Its name.
+    /// Name of the state.
     pub name: &'static str,
-    /// Its time derivative.
+    /// Time derivative of the state.
     pub rate: &'static str,
-    /// Its value at the start, from `position` and `velocity`.
+    /// Value at the start, from `position` and `velocity`.
     pub start: &'static str,
 }
 
-/// An effect as an attribute of a joint, by the names of its parameters.
+/// Effect as an attribute of a joint, by the names of its parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Joint {
-    /// There is no such attribute.
+    /// No such attribute exists.
     Absent,
-    /// Dry friction of this torque.
+    /// Dry friction with this torque.
     Friction(&'static str),
-    /// A shift of the relaxed spring by this torque over the stiffness.
+    /// Shift of the relaxed spring by this torque over the stiffness.
     SpringShift(&'static str),
-    /// The weight of a mass with this torque when held level, at this angle from hanging straight down.
+    /// Weight of a mass with this torque when held level, at this angle from hanging straight down.
     Weight {
         /// Weight times lever arm.
         torque: &'static str,
@@ -46,7 +46,7 @@ pub enum Joint {
 }
 
 impl Export {
-    /// An effect that adds a torque, without hidden states or an attribute of its own.
+    /// Creates an effect that adds a torque, without hidden states or an attribute of its own.
     #[must_use]
     pub const fn torque(expression: &'static str) -> Self {
         Self { torque: Some(expression), states: &[], joint: Joint::Absent }

@@ -1,17 +1,17 @@
-//! The vector field: what all forces together do to a state, on one smooth piece.
+//! Vector field: the rates of a state under all forces together, on one smooth piece.
 
 use crate::law::{Hidden, MOST_HIDDEN, Moment, Values};
 use crate::nominal::Coefficients;
 use crate::registry::SystemEffect;
 use crate::scalar::Scalar;
 
-/// Most hidden state variables of a system: those of all effects of the registry together.
+/// Maximum number of hidden state variables of a system: those of all effects of the registry together.
 pub const SYSTEM_HIDDEN: usize = 4;
 
-/// Most effects in one system: each of the registry once.
+/// Maximum number of effects in one system: each of the registry once.
 pub(crate) const MOST_EFFECTS: usize = SystemEffect::ALL.len();
 
-/// One smooth piece: direction of motion and the region of each effect.
+/// Smooth piece of the law: direction of motion and the region of each effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mode {
     /// 1 or −1; 0 while the system sticks.
@@ -37,7 +37,7 @@ pub(crate) struct State<S> {
 }
 
 impl State<f64> {
-    /// The same state in another kind of number.
+    /// Converts the state to another scalar type.
     pub(crate) fn over<S: Scalar>(&self) -> State<S> {
         State {
             time: S::from(self.time),
@@ -49,16 +49,16 @@ impl State<f64> {
     }
 }
 
-/// One effect of a system.
+/// Effect of a system with its values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Term<S> {
     pub(crate) effect: SystemEffect,
     pub(crate) values: Values<S>,
-    /// Where its hidden state begins.
+    /// Index of its first hidden state variable.
     pub(crate) hidden: usize,
 }
 
-/// A system as an evaluable field over any scalar.
+/// System as a field that can be evaluated over any scalar.
 #[derive(Debug, Clone)]
 pub(crate) struct Field<S> {
     pub(crate) nominal: Coefficients<S>,
@@ -66,7 +66,7 @@ pub(crate) struct Field<S> {
 }
 
 impl Field<f64> {
-    /// The same field on another kind of number.
+    /// Converts the field to another scalar type.
     pub(crate) fn over<S: Scalar>(&self) -> Field<S> {
         let Coefficients { inertia, damping, stiffness, rest_angle, input_gain } = self.nominal;
         let nominal = Coefficients {
@@ -87,7 +87,7 @@ impl Field<f64> {
 }
 
 impl<S: Scalar> Term<S> {
-    /// What the effect sees.
+    /// Returns the moment that the effect reads.
     #[inline]
     pub(crate) fn moment(
         &self,
@@ -114,7 +114,7 @@ impl<S: Scalar> Term<S> {
 }
 
 impl<S: Scalar> Field<S> {
-    /// Every effect with what it sees.
+    /// Returns every effect with the moment that it reads.
     #[inline]
     pub(crate) fn moments(
         &self,
@@ -127,19 +127,19 @@ impl<S: Scalar> Field<S> {
         })
     }
 
-    /// The nominal damping's torque −c·θ̇.
+    /// Returns the nominal damping's torque −c·θ̇.
     #[inline]
     pub(crate) fn damping(&self, state: &State<S>) -> S {
         -self.nominal.damping * state.velocity
     }
 
-    /// The nominal spring's torque −k·(θ − θ_rest).
+    /// Returns the nominal spring's torque −k·(θ − θ_rest).
     #[inline]
     pub(crate) fn spring(&self, state: &State<S>) -> S {
         -self.nominal.stiffness * (state.position - self.nominal.rest_angle)
     }
 
-    /// All torques together, in a mode that may stick: dry friction then gives none.
+    /// Returns the sum of all torques. In a mode that sticks dry friction contributes none.
     #[inline]
     pub(crate) fn torque(&self, state: &State<S>, mode: &Mode) -> S {
         let nominal = self.spring(state) + self.damping(state) + state.input;
@@ -147,13 +147,14 @@ impl<S: Scalar> Field<S> {
             .fold(nominal, |sum, (term, moment)| sum + term.effect.torque(&term.values, &moment))
     }
 
-    /// The torque up to which dry friction holds; `None` where there is none.
+    /// Returns the torque up to which dry friction holds; `None` without dry friction.
     pub(crate) fn holding_torque(&self) -> Option<S> {
         let holding = self.terms.iter().filter_map(|term| term.effect.holding_torque(&term.values));
         holding.reduce(|sum, torque| sum + torque)
     }
 
-    /// Acceleration and the rates of the hidden state; no acceleration while it sticks.
+    /// Returns the acceleration and the rates of the hidden state. The acceleration is zero while the system
+    /// sticks.
     #[inline]
     pub(crate) fn rates(&self, state: &State<S>, mode: &Mode) -> (S, [S; SYSTEM_HIDDEN]) {
         let acceleration =

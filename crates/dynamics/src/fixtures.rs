@@ -1,4 +1,4 @@
-//! What the tests of both integrators share.
+//! Fixtures shared by the tests of both integrators.
 
 use crate::{Active, Hold, Input, Nominal, System};
 
@@ -58,7 +58,7 @@ pub(crate) const EVERYTHING: &[(&str, &[f64])] = &[
     ("input_saturation", &[8.0]),
 ];
 
-/// A command whose torque goes up to 12, 50 samples a second, its frequency rising.
+/// A command with a torque of up to 12 and a rising frequency, 50 samples a second.
 pub(crate) fn command(duration: f64, hold: Hold) -> Input {
     let times = grid(duration, 50.0);
     let values = times.iter().map(|t| 12.0 * (19.0 * t + 0.8 * t * t).sin()).collect();

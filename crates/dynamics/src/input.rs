@@ -1,4 +1,4 @@
-//! The measured input.
+//! Measured input.
 
 use crate::error::DynamicsError;
 use serde::{Deserialize, Serialize};
@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hold {
-    /// It keeps the last value, as a digital controller's output does.
+    /// Keeps the last value, as a digital controller's output does.
     #[default]
     Zero,
-    /// It goes straight to the next value.
+    /// Changes linearly to the next value.
     Linear,
 }
 
 impl Hold {
-    /// Its name in configurations and results.
+    /// Returns the name in configurations and results.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -24,7 +24,7 @@ impl Hold {
         }
     }
 
-    /// What the input does, in words that follow "the input".
+    /// Returns the behavior in words that follow "the input".
     #[must_use]
     pub fn in_words(self) -> &'static str {
         match self {
@@ -34,8 +34,8 @@ impl Hold {
     }
 }
 
-/// A measured input: values at times, and what happens in between. Before the first time it has the first
-/// value, after the last the last.
+/// Measured input: values at times, and the behavior in between. Before the first time it has the first
+/// value, after the last time the last one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Input {
     times: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Input {
     hold: Hold,
 }
 
-/// The input on one piece: `value` at time `from`, changing by `slope` per second until `until`.
+/// Input on one piece: `value` at time `from`, changing by `slope` per second until `until`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Piece {
     pub(crate) from: f64,
@@ -59,12 +59,12 @@ impl Piece {
 }
 
 impl Input {
-    /// An input from its samples; times in seconds, values in the unit that the nominal `input_gain` turns
-    /// into a torque.
+    /// Creates an input from its samples; times in seconds, values in the unit that the nominal `input_gain`
+    /// converts to a torque.
     ///
     /// # Errors
-    /// [`DynamicsError::BadInput`] unless there is at least one sample, as many values as times, all
-    /// finite, and the times strictly increase.
+    /// Returns [`DynamicsError::BadInput`] unless there is at least one sample, as many values as times, all
+    /// are finite, and the times strictly increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, hold: Hold) -> Result<Self, DynamicsError> {
         let bad = |what, index, value, remedy| Err(DynamicsError::BadInput { what, index, value, remedy });
         if times.is_empty() || times.len() != values.len() {
@@ -88,28 +88,31 @@ impl Input {
         Ok(Self { times, values, hold })
     }
 
-    /// Sample times in seconds, increasing; as many as [`Self::values`].
+    /// Returns the sample times in seconds, increasing; as many as [`Self::values`].
     #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Sample values in the input's unit, before the nominal oscillator's gain.
+    /// Returns the sample values in the input's unit, before the nominal oscillator's gain.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Behavior between samples.
+    /// Returns the behavior between samples.
     #[must_use]
     pub fn hold(&self) -> Hold {
         self.hold
     }
 
-    /// The input with one knot in place of every `count` samples, straight between them: the knots' values are those whose straight
-    /// lines lie closest to the input over all of its time (least squares; the last sample has none of it). What is left out is
-    /// orthogonal to straight lines over two knots, so that a system which is slow beside them moves the same way to fourth order in
-    /// their distance; means over `count` samples agree to second. A `count` of 0 or 1 changes nothing.
+    /// Returns the input with one knot in place of every `count` samples and straight lines between the
+    /// knots. A `count` of 0 or 1 changes nothing.
+    ///
+    /// The values at the knots are those whose straight lines lie closest to the input over all of its time
+    /// (least squares; the last sample gets no time). The remainder is orthogonal to straight lines over two
+    /// knots. So a system that is slow in comparison moves the same way to fourth order in the distance of
+    /// the knots; means over `count` samples agree to second order.
     ///
     /// ```
     /// use dynamics::{Hold, Input};
@@ -128,7 +131,7 @@ impl Input {
             return self.clone();
         }
         let times: Vec<f64> = self.times.iter().copied().step_by(count).collect();
-        // Of the normal equations: the diagonal, what stands beside it, and the right side.
+        // Normal equations: the diagonal, the entries beside it, and the right side.
         let mut diagonal = vec![0.0; times.len()];
         let mut beside = vec![0.0; times.len()];
         let mut values = vec![0.0; times.len()];
@@ -142,7 +145,7 @@ impl Input {
                 _ => 0.0,
             };
             let length = until - from;
-            // Integral of the product of two functions that are straight over the piece.
+            // Integral of the product of two functions that are linear over the piece.
             let product =
                 |[a, b]: [f64; 2], [c, d]: [f64; 2]| length / 6.0 * (2.0 * (a * c + b * d) + a * d + b * c);
             let after = [part(from), part(until)];
@@ -162,7 +165,8 @@ impl Input {
         Self { times, values, hold: Hold::Linear }
     }
 
-    /// The piece that begins at sample `index − 1` and ends at sample `index`; 0 is the piece before the first.
+    /// Returns the piece that begins at sample `index − 1` and ends at sample `index`; 0 is the piece before
+    /// the first.
     pub(crate) fn piece(&self, index: usize) -> Piece {
         let at = |list: &[f64], index: usize| list.get(index).copied();
         let until = at(&self.times, index).unwrap_or(f64::INFINITY);
@@ -172,7 +176,7 @@ impl Input {
             return Piece { from: f64::NEG_INFINITY, value, slope: 0.0, until };
         };
         debug_assert_eq!(self.times.len(), self.values.len(), "an input has a value for every time");
-        // There is one: the sample's time was found above.
+        // The value exists: the sample's time was found above.
         let value = at(&self.values, index - 1).unwrap_or(0.0);
         let slope = match (self.hold, at(&self.values, index)) {
             (Hold::Linear, Some(next)) => (next - value) / (until - from),
@@ -181,14 +185,14 @@ impl Input {
         Piece { from, value, slope, until }
     }
 
-    /// Index of the piece that holds just after a time.
+    /// Returns the index of the piece that holds just after a time.
     pub(crate) fn piece_index(&self, time: f64) -> usize {
         self.times.partition_point(|&knot| knot <= time)
     }
 }
 
-/// Solves a positive definite system in place by elimination without pivots; `beside[i]` couples the unknowns i and i + 1, and
-/// `diagonal` is used up.
+/// Solves a positive definite system in place by elimination without pivots. `beside[i]` couples the unknowns
+/// i and i + 1; `diagonal` is overwritten.
 fn solve_symmetric_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mut [f64]) {
     debug_assert!(
         diagonal.len() == values.len() && diagonal.len() == beside.len(),
@@ -214,7 +218,7 @@ fn solve_symmetric_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mu
 mod tests {
     use super::{Hold, Input};
 
-    /// A straight line stays one; held, it is the line through the middles of its steps.
+    /// A straight line stays one; with zero-order hold it is the line through the middles of its steps.
     #[test]
     fn fewer_samples_of_a_straight_line_lie_on_it() {
         let times: Vec<f64> = (0..10).map(f64::from).collect();
@@ -230,8 +234,8 @@ mod tests {
         }
     }
 
-    /// What a slow system feels of a sine, its product with smooth bumps, differs by the fourth power of the knots' distance:
-    /// with twice the distance by sixteen times as much.
+    /// The response of a slow system to a sine is its product with smooth bumps. It differs by the fourth
+    /// power of the knots' distance: sixteen times as much at twice the distance.
     #[test]
     fn a_slow_system_feels_the_same() {
         let times: Vec<f64> = (0..4001).map(|at| 1e-3 * f64::from(at)).collect();
@@ -241,7 +245,7 @@ mod tests {
                 let at = input.times().partition_point(|knot| *knot <= time);
                 input.piece(at).at(time) * (-(time - 2.0).powi(2) / 0.02).exp() * (40.0 * time).sin()
             };
-            // In the middle of each tenth of a piece: where a held input jumps there is no value.
+            // In the middle of each tenth of a piece: at its jumps a held input has no value.
             (0..40_000).map(|at| of(1e-4 * (f64::from(at) + 0.5))).sum::<f64>() * 1e-4
         };
         for hold in [Hold::Linear, Hold::Zero] {

@@ -1,13 +1,13 @@
-//! The ground under diagnosis and trials: a nominal oscillator, the effects that a simulator may lack, two
-//! integrators, and the measuring chain.
+//! Dynamics of the systems that are diagnosed: a nominal oscillator, the effects that a simulator may lack,
+//! two integrators, and the measurement chain.
 //!
-//! A [`Nominal`] oscillator and [`Active`] effects of the [`registry`] make a [`System`].
-//! [`reference::simulate`] gives its motion to twelve digits, with its events and the work of every effect;
-//! [`sensitivity::Model`] gives it fast, with exact derivatives, for fitting. A [`chain::Chain`] makes of a motion
-//! what a file says of it.
+//! A [`Nominal`] oscillator and [`Active`] effects of the [`registry`] form a [`System`].
+//! [`reference::simulate`] computes its motion to twelve digits, with its events and the work of every
+//! effect; [`sensitivity::Model`] computes it fast and with exact derivatives, for fitting. A
+//! [`chain::Chain`] turns a motion into the samples of a file.
 //!
 //! # Example
-//! The release of an oscillator of 3.5 Hz with dry friction:
+//! Release of an oscillator of 3.5 Hz with dry friction:
 //!
 //! ```
 //! use dynamics::reference::{Tolerance, simulate};
@@ -28,9 +28,9 @@
 //! ```
 //!
 //! # Units
-//! SI: seconds, radians or meters, N m or N, kg m² or kg. Where only the motion is known everything is
-//! divided by the inertia, which is then exactly 1; torques are in rad/s² or m/s² then. [`Quantity::unit`]
-//! tells the symbol.
+//! SI: seconds, radians or meters, N m or N, kg m² or kg. If only the motion is known, all coefficients are
+//! divided by the inertia, which is then exactly 1, and torques are in rad/s² or m/s². [`Quantity::unit`]
+//! returns the symbol.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

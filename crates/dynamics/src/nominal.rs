@@ -1,15 +1,15 @@
-//! The nominal oscillator: what the simulator already knows.
+//! Nominal oscillator: the oscillator as the simulator knows it.
 
 use crate::description::Range;
 use crate::error::DynamicsError;
 use crate::units::{Coordinate, Units};
 use serde::{Deserialize, Serialize};
 
-/// The nominal simulator I·θ̈ + c·θ̇ + k·(θ − θ_rest) = g·u(t).
+/// Nominal oscillator I·θ̈ + c·θ̇ + k·(θ − θ_rest) = g·u(t).
 ///
 /// Numbers are in SI units (kg m², N m s/rad, N m/rad, rad for an angle; kg, N s/m, N/m, m for a
-/// displacement), or everything is divided by the inertia, which is then exactly 1 (1/s for damping, 1/s²
-/// for stiffness). A stiffness of 0 is a drive without a spring.
+/// displacement), or all are divided by the inertia, which is then exactly 1 (1/s for damping, 1/s² for
+/// stiffness). A stiffness of 0 describes a drive without a spring.
 ///
 /// ```
 /// use dynamics::Nominal;
@@ -29,7 +29,7 @@ pub struct Nominal {
     sensor_resolution: Option<f64>,
 }
 
-/// The five coefficients of a nominal oscillator, as numbers of any kind.
+/// Five coefficients of a nominal oscillator, over any scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coefficients<S> {
     /// Moment of inertia, or mass; above 0.
@@ -38,7 +38,7 @@ pub struct Coefficients<S> {
     pub damping: S,
     /// Stiffness of the spring; 0 or above.
     pub stiffness: S,
-    /// Where the spring is relaxed.
+    /// Position of the relaxed spring, in rad or m.
     pub rest_angle: S,
     /// Torque per unit of the input.
     pub input_gain: S,
@@ -64,19 +64,19 @@ fn one() -> f64 {
 }
 
 impl Nominal {
-    /// A nominal oscillator of an angle, with an input gain of 1.
+    /// Creates a nominal oscillator of an angle, with an input gain of 1.
     ///
     /// # Errors
-    /// [`DynamicsError::NominalOutOfRange`] unless the inertia is above 0, damping and stiffness are 0 or
-    /// above, and every number is finite.
+    /// Returns [`DynamicsError::NominalOutOfRange`] unless the inertia is above 0, damping and stiffness are
+    /// 0 or above, and every number is finite.
     pub fn new(inertia: f64, damping: f64, stiffness: f64, rest_angle: f64) -> Result<Self, DynamicsError> {
         Self::from_coefficients(Coefficients { inertia, damping, stiffness, rest_angle, input_gain: 1.0 })
     }
 
-    /// A nominal oscillator of an angle from all five coefficients.
+    /// Creates a nominal oscillator of an angle from all five coefficients.
     ///
     /// # Errors
-    /// As [`Self::new`]; the input gain may be any finite number.
+    /// Returns the same errors as [`Self::new`]; the input gain may be any finite number.
     pub fn from_coefficients(coefficients: Coefficients<f64>) -> Result<Self, DynamicsError> {
         for (parameter, value, range) in [
             ("inertia", coefficients.inertia, Range::POSITIVE),
@@ -92,16 +92,17 @@ impl Nominal {
         Ok(Self { coefficients, coordinate: Coordinate::Angle, sensor_resolution: None })
     }
 
-    /// The same numbers read in another coordinate: an angle in radians or a displacement in meters. Nothing is converted.
+    /// Returns the same numbers read in another coordinate: an angle in radians or a displacement in meters.
+    /// Nothing is converted.
     #[must_use]
     pub fn with_coordinate(self, coordinate: Coordinate) -> Self {
         Self { coordinate, ..self }
     }
 
-    /// The same oscillator with the sensor's stated resolution, in the coordinate's unit.
+    /// Returns the same oscillator with the sensor's stated resolution, in the coordinate's unit.
     ///
     /// # Errors
-    /// [`DynamicsError::NominalOutOfRange`] unless it is above 0.
+    /// Returns [`DynamicsError::NominalOutOfRange`] unless the resolution is above 0.
     pub fn with_sensor_resolution(self, resolution: f64) -> Result<Self, DynamicsError> {
         if !Range::POSITIVE.contains(resolution) {
             return Err(DynamicsError::NominalOutOfRange {
@@ -113,70 +114,71 @@ impl Nominal {
         Ok(Self { sensor_resolution: Some(resolution), ..self })
     }
 
-    /// The same oscillator with other coefficients.
+    /// Returns the same oscillator with other coefficients.
     ///
     /// # Errors
-    /// As [`Self::from_coefficients`].
+    /// Returns the same errors as [`Self::from_coefficients`].
     pub fn with_coefficients(self, coefficients: Coefficients<f64>) -> Result<Self, DynamicsError> {
         let checked = Self::from_coefficients(coefficients)?;
         Ok(Self { coefficients: checked.coefficients, ..self })
     }
 
-    /// All coefficients, in SI units, or per inertia where the inertia is 1.
+    /// Returns all coefficients, in SI units, or per inertia if the inertia is 1.
     #[must_use]
     pub fn coefficients(&self) -> Coefficients<f64> {
         self.coefficients
     }
 
-    /// Moment of inertia in kg m², mass in kg, or 1.
+    /// Returns the moment of inertia in kg m², the mass in kg, or 1.
     #[must_use]
     pub fn inertia(&self) -> f64 {
         self.coefficients.inertia
     }
 
-    /// Viscous damping in N m s/rad, N s/m, or 1/s.
+    /// Returns the viscous damping in N m s/rad, N s/m, or 1/s.
     #[must_use]
     pub fn damping(&self) -> f64 {
         self.coefficients.damping
     }
 
-    /// Stiffness in N m/rad, N/m, or 1/s².
+    /// Returns the stiffness in N m/rad, N/m, or 1/s².
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         self.coefficients.stiffness
     }
 
-    /// Position of the relaxed spring, in rad or m.
+    /// Returns the position of the relaxed spring, in rad or m.
     #[must_use]
     pub fn rest_angle(&self) -> f64 {
         self.coefficients.rest_angle
     }
 
-    /// Torque (N m) or force (N) per unit of input; with an inertia of 1, acceleration in rad/s² or m/s² per unit of input.
+    /// Returns the torque (N m) or force (N) per unit of input; with an inertia of 1, the acceleration in
+    /// rad/s² or m/s² per unit of input.
     #[must_use]
     pub fn input_gain(&self) -> f64 {
         self.coefficients.input_gain
     }
 
-    /// Angle or displacement.
+    /// Returns the coordinate: angle or displacement.
     #[must_use]
     pub fn coordinate(&self) -> Coordinate {
         self.coordinate
     }
 
-    /// The sensor's stated resolution in the coordinate's unit, where known.
+    /// Returns the sensor's stated resolution in the coordinate's unit; `None` if unknown.
     #[must_use]
     pub fn sensor_resolution(&self) -> Option<f64> {
         self.sensor_resolution
     }
 
-    /// Undamped angular frequency √(k/I) in rad/s; 0 without a spring.
+    /// Returns the undamped angular frequency √(k/I) in rad/s; 0 without a spring.
     #[must_use]
     pub fn angular_frequency(&self) -> f64 {
         (self.stiffness() / self.inertia()).sqrt()
     }
 
-    /// The units its numbers are in: per inertia where the inertia is exactly 1.
+    /// Returns the units of the numbers: per inertia if the inertia is exactly 1.
     #[must_use]
     pub fn units(&self) -> Units {
         if self.inertia() == 1.0 { Units::PerInertia(self.coordinate) } else { Units::Si(self.coordinate) }

@@ -1,4 +1,4 @@
-//! The nominal simulator: the nominal oscillator with the effects that it has already.
+//! Nominal simulator: the nominal oscillator with the effects that it already has.
 
 use crate::active::Active;
 use crate::chain::{Chain, Observed};
@@ -7,30 +7,31 @@ use crate::nominal::Nominal;
 use crate::registry::{Effect, SystemEffect};
 use crate::system::System;
 
-/// An effect that a nominal simulator has.
+/// Effect that a nominal simulator has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownEffect {
-    /// The effect with its stated parameters.
+    /// Effect with its stated parameters.
     pub active: Active,
-    /// True if a recalibration may move its parameters; otherwise they are held as stated.
+    /// `true` if recalibration may move its parameters; otherwise they are held as stated.
     pub recalibrate: bool,
 }
 
-/// A nominal oscillator with the effects that the simulator has already, each at most once.
+/// Nominal oscillator with the effects that the simulator already has, each at most once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NominalSimulator {
     nominal: Nominal,
     effects: Vec<KnownEffect>,
 }
 
-/// Positions at which a weight's potential is looked at for its minimum, around a turn.
+/// Number of positions, around a turn, at which a weight's potential is evaluated to find its minimum.
 const POSITIONS: usize = 720;
 
 impl NominalSimulator {
-    /// A nominal oscillator with effects in the system and in the measuring chain; none is legal.
+    /// Creates a nominal simulator from an oscillator and effects in the system and in the measurement chain;
+    /// the list may be empty.
     ///
     /// # Errors
-    /// As [`System::new`] and [`Chain::new`].
+    /// Returns the same errors as [`System::new`] and [`Chain::new`].
     pub fn new(nominal: Nominal, effects: Vec<KnownEffect>) -> Result<Self, DynamicsError> {
         let (system, chain): (Vec<Active>, Vec<Active>) = effects
             .iter()
@@ -41,20 +42,20 @@ impl NominalSimulator {
         Ok(Self { nominal, effects })
     }
 
-    /// The oscillator by itself.
+    /// Returns the oscillator alone.
     #[must_use]
     pub fn nominal(&self) -> &Nominal {
         &self.nominal
     }
 
-    /// The effects, in the order given.
+    /// Returns the effects, in the order given.
     #[must_use]
     pub fn effects(&self) -> &[KnownEffect] {
         &self.effects
     }
 
-    /// Position in rad or m about which small swings are, and the stiffness against them: the spring's and that of a
-    /// weight. Without a weight the rest angle and the stiffness of the oscillator.
+    /// Returns the equilibrium in rad or m, and the stiffness against small swings about it: that of the
+    /// spring and of a weight. Without a weight these are the rest angle and the stiffness of the oscillator.
     #[must_use]
     pub fn equilibrium(&self) -> (f64, f64) {
         let weight = |active: &Active| {
@@ -66,7 +67,8 @@ impl NominalSimulator {
             return (rest, stiffness);
         };
         let potential = |x: f64| 0.5 * stiffness * (x - rest).powi(2) - torque * (x + angle).cos();
-        // Hanging straight down, and so many positions within half a turn of where the spring rests.
+        // The position hanging straight down, and `POSITIONS` positions within half a turn of the spring's
+        // rest angle.
         let step = std::f64::consts::TAU / POSITIONS as f64;
         let around = (0..=POSITIONS).map(|index| rest + (index as f64 - 0.5 * POSITIONS as f64) * step);
         let lowest = around.chain([-angle]).min_by(|a, b| potential(*a).total_cmp(&potential(*b)));
@@ -74,7 +76,7 @@ impl NominalSimulator {
         (place, (stiffness + torque * (place + angle).cos()).max(0.0))
     }
 
-    /// Angular frequency of small swings without damping, in rad/s; 0 without spring and weight.
+    /// Returns the angular frequency of small undamped swings, in rad/s; 0 without spring and weight.
     #[must_use]
     pub fn angular_frequency(&self) -> f64 {
         (self.equilibrium().1 / self.nominal.inertia()).sqrt()

@@ -1,8 +1,8 @@
-//! The effects there are, one line each.
+//! Registry of effects, one line each.
 //!
-//! Everybody who needs to know what effects exist reads [`REGISTRY`]: simulator, diagnosis, documents. An
-//! effect in the system is a file under `effects/`, one in the measuring chain a file under `chain/`; either
-//! takes a line in `registry!`. What can be simulated and fitted but has no name in the vocabulary stands in
+//! [`REGISTRY`] is the only list of effects: simulator, diagnosis and documents read it. An effect in the
+//! system is a file under `effects/`, one in the measurement chain a file under `chain/`; either takes a line
+//! in `registry!`. Effects that can be simulated and fitted but have no name in the vocabulary are in
 //! [`UNNAMED`].
 
 use crate::chain::{self, Extent, Observed, Sampled, SampledMotion, Samples, Step};
@@ -15,10 +15,10 @@ use crate::nominal::Nominal;
 use crate::scalar::Scalar;
 use rand::Rng;
 
-/// Makes the enumeration of effects and hands every question to the effect's own law, at compile time.
+/// Generates the enumeration of effects and dispatches every call to the effect's own law, at compile time.
 macro_rules! system_effects {
     ($($name:ident,)+) => {
-        /// An effect that acts in the system.
+        /// Effect that acts in the system.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum SystemEffect {
             $(#[doc = concat!("See [`effects::", stringify!($name), "`].")] $name,)+
@@ -97,7 +97,7 @@ macro_rules! system_effects {
             /// Calls [`Law::check`] of the effect.
             ///
             /// # Errors
-            /// As [`Law::check`].
+            /// Returns the same errors as [`Law::check`].
             pub fn check(self, values: &Values<f64>, nominal: &Nominal) -> Result<(), DynamicsError> {
                 match self { $(Self::$name => effects::$name::check(values, nominal),)+ }
             }
@@ -105,17 +105,17 @@ macro_rules! system_effects {
     };
 }
 
-/// The same for the measuring chain.
+/// Generates the same for the measurement chain.
 macro_rules! chain_effects {
     ($($name:ident,)+) => {
-        /// An effect in the measuring chain.
+        /// Effect in the measurement chain.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum ChainEffect {
             $(#[doc = concat!("See [`chain::", stringify!($name), "`].")] $name,)+
         }
 
         impl ChainEffect {
-            /// Every effect in the measuring chain, in the order in which they act.
+            /// Every effect in the measurement chain, in the order in which they act.
             pub const ALL: &'static [Self] = &[$(Self::$name,)+];
 
             /// Returns the description: id, equation, parameters, signature and reference.
@@ -154,7 +154,7 @@ macro_rules! chain_effects {
             /// Calls [`Step::check`] of the effect.
             ///
             /// # Errors
-            /// As [`Step::check`].
+            /// Returns the same errors as [`Step::check`].
             pub fn check(self, values: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
                 match self { $(Self::$name => chain::$name::check(values, extent),)+ }
             }
@@ -167,14 +167,14 @@ macro_rules! registry {
         system_effects! { $($system,)+ $($unnamed,)+ }
         chain_effects! { $($chain,)+ }
 
-        /// Every effect of the vocabulary: those in the system in the order of the documents, then those in the
-        /// measuring chain in the order in which they act.
+        /// Every effect of the vocabulary: those in the system in the order of the documents, then those in
+        /// the measurement chain in the order in which they act.
         pub static REGISTRY: &[Effect] = &[
             $(Effect::System(SystemEffect::$system),)+
             $(Effect::MeasuringChain(ChainEffect::$chain),)+
         ];
 
-        /// Shapes of torque that can act and are no effects of the vocabulary, since their cause is left open.
+        /// Torques that can act but are not effects of the vocabulary, since their cause is left open.
         pub static UNNAMED: &[Effect] = &[$(Effect::System(SystemEffect::$unnamed),)+];
     };
 }
@@ -217,12 +217,12 @@ registry! {
     }
 }
 
-/// An effect of the registry, by where it acts.
+/// Effect of the registry, by the part of the simulation in which it acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// In the system: it changes the motion.
     System(SystemEffect),
-    /// In the measuring chain: it changes what a file says of the motion.
+    /// In the measurement chain: it changes what a file says about the motion.
     MeasuringChain(ChainEffect),
 }
 
@@ -236,16 +236,16 @@ impl Effect {
         }
     }
 
-    /// The public id.
+    /// Returns the public id.
     #[must_use]
     pub const fn id(self) -> &'static str {
         self.description().id
     }
 
-    /// The effect with a public id, without a name in the vocabulary or with one.
+    /// Returns the effect with a public id, whether the vocabulary names it or not.
     ///
     /// # Errors
-    /// [`DynamicsError::UnknownEffect`] where there is none.
+    /// Returns [`DynamicsError::UnknownEffect`] if there is none.
     pub fn find(id: &str) -> Result<Self, DynamicsError> {
         REGISTRY.iter().chain(UNNAMED).copied().find(|effect| effect.id() == id).ok_or_else(|| {
             DynamicsError::UnknownEffect {

@@ -1,4 +1,5 @@
-//! Motions that begin in balance: at rest, where all torques cancel but for rounding, until something moves the body.
+//! Motions that begin in balance: at rest, where all torques cancel except for rounding, until something
+//! moves the body.
 
 use crate::fixtures::{difference, grid, with};
 use crate::reference::{Tolerance, simulate};
@@ -8,8 +9,8 @@ use rand::RngExt;
 use seed::Seed;
 use std::f64::consts::TAU;
 
-/// Effects in proportion to the oscillator's own torques: those with dry friction, those that depend on the direction
-/// without holding, those with a hidden state, those that shift the balance.
+/// Effects in proportion to the oscillator's own torques: those with dry friction, those that depend on the
+/// direction without holding, those with a hidden state, those that shift the balance.
 fn lists(nominal: &Nominal) -> Vec<Vec<(&'static str, Vec<f64>)>> {
     let torque = |part: f64| part * nominal.stiffness();
     let friction = || ("coulomb_friction", vec![torque(0.003)]);
@@ -42,7 +43,7 @@ fn lists(nominal: &Nominal) -> Vec<Vec<(&'static str, Vec<f64>)>> {
     ]
 }
 
-/// The position at which the spring, the weight and the pull cancel, to rounding.
+/// Position at which the spring, the weight and the pull cancel, to rounding.
 fn balance(system: &System) -> f64 {
     let value = |id: &str, name: &str| {
         let active = system.effects().iter().find(|active| active.id() == id);
@@ -82,9 +83,9 @@ fn wave(number: usize, phase: f64) -> f64 {
 
 #[test]
 fn from_balance_a_motion_gets_under_way() {
-    // Regression: rounding left an acceleration of 1e-17; the defect of a step was held against how far that goes, and
-    // no step was short enough. Where the torque was zero at rest the direction was taken to be forward again and
-    // again.
+    // Regression: rounding left an acceleration of 1e-17. The defect of a step was compared with the distance
+    // that this acceleration moves the body, and no step was short enough. If the torque was zero at rest,
+    // the direction was taken to be forward again and again.
     let mut generator = Seed::new(11).child("balance").generator();
     let (mut runs, mut compared) = (0, 0);
     let sets = lists(&Nominal::new(1.0, 0.1, 400.0, 0.0).unwrap()).len();
@@ -98,7 +99,7 @@ fn from_balance_a_motion_gets_under_way() {
         let list: Vec<(&str, &[f64])> = list.iter().map(|(id, values)| (*id, values.as_slice())).collect();
         let system = with(nominal, &list);
         let holds = system.field().holding_torque().is_some();
-        // Within the hold of dry friction every place is one of rest.
+        // Within the hold of dry friction every position is one of rest.
         let beside = if holds && round % 2 == 0 { 0.001 } else { 0.0 };
         let start = Start::release(balance(&system) + beside);
         let period = TAU / omega;
@@ -108,7 +109,7 @@ fn from_balance_a_motion_gets_under_way() {
         let torque = |time: &f64| 0.05 * nominal.stiffness() * size * wave(number, time / period - quiet);
         let values = knots.iter().map(torque).collect();
         let hold = if generator.random_range(0..2) == 0 { Hold::Zero } else { Hold::Linear };
-        // Without an input it has to stay where it is, or be moved by the forcing alone.
+        // Without an input the body has to stay where it is, or be moved by the forcing alone.
         let driven =
             generator.random_range(0..6) != 0 && list.iter().all(|(id, _)| *id != "periodic_forcing");
         let input = driven.then(|| Input::new(knots, values, hold).unwrap());
@@ -122,7 +123,7 @@ fn from_balance_a_motion_gets_under_way() {
             model.run(start.into(), input.as_ref(), &times).unwrap_or_else(|error| panic!("{what}: {error}"));
         assert!(response.position_sensitivity.iter().all(|value| value.is_finite()), "{what}");
         if list.is_empty() && input.is_some() {
-            // What moves a linear oscillator from rest is in proportion to the gain, which is 1.
+            // The motion of a linear oscillator from rest is proportional to the gain, which is 1.
             let by_gain: Vec<f64> =
                 response.position_sensitivity.chunks(2).map(|row| start.position + row[1]).collect();
             let largest = response.position.iter().map(|position| (position - start.position).abs());
@@ -140,13 +141,13 @@ fn from_balance_a_motion_gets_under_way() {
         let rounding = 1e-13 * start.position.abs().max(1e-3);
         assert!(off < 10.0 * tolerance * moved + rounding, "{what}: {off:e} of {moved:e}");
     }
-    // The reference does not get through every one of them: where a ramp begins its stages do not converge.
+    // The reference does not complete all of them: at the start of a ramp its stages may not converge.
     assert!(5 * compared > 4 * runs, "{compared} of {runs}");
 }
 
 #[test]
 fn in_balance_nothing_moves_and_steps_stay_long() {
-    // The oscillator has 3.5 Hz: a few steps a period do, whatever rounding leaves of its torques.
+    // The oscillator has 3.5 Hz: a few steps a period suffice, whatever rounding leaves of its torques.
     let settings = Settings { most_steps: 1_000, ..Settings::default() };
     for inertia in [1.0, 0.37, 3.0e-5, 71.0] {
         let omega = 7.0 * std::f64::consts::PI;
@@ -167,12 +168,12 @@ fn in_balance_nothing_moves_and_steps_stay_long() {
 
 #[test]
 fn at_rest_without_torque_a_ramp_moves_it_either_way() {
-    // Regression: the torque is zero at first, and says forward; the drag depends on the direction.
+    // Regression: the torque is zero at first, which was taken as forward; the drag depends on the direction.
     for (slope, hidden) in [(3.0, false), (-3.0, false), (3.0, true), (-3.0, true)] {
         let nominal = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
         let mut list: Vec<(&str, &[f64])> = vec![("quadratic_drag", &[0.4])];
         if hidden {
-            // Its hidden state is zero and begins to move with the fourth power of time only.
+            // Its hidden state is zero and begins to move only with the fourth power of time.
             list.push(("flexible_coupling", &[0.05, 180.0, 0.2]));
         }
         let system = with(nominal, &list);
@@ -189,8 +190,8 @@ fn at_rest_without_torque_a_ramp_moves_it_either_way() {
 
 #[test]
 fn sticking_and_breaking_away_for_long_does_not_stall() {
-    // Regression: where a torque just reached the hold, rounding of the spring's torque let the body break away and
-    // stick again without end.
+    // Regression: if a torque just reached the hold, rounding of the spring's torque let the body break away
+    // and stick again without end.
     let mut generator = Seed::new(12).child("stick-slip").generator();
     for round in 0..1000 {
         let inertia = 10_f64.powf(generator.random_range(-4.0..1.0));

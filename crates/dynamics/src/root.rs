@@ -1,7 +1,8 @@
 //! Zeros of functions of one variable.
 
-/// A zero of `margin` between `from`, where it is positive, and `to`, where it is negative, by the Illinois
-/// variant of regula falsi with bisection where that stalls; to the resolution of doubles.
+/// Finds a zero of `margin` between `from`, where it is positive, and `to`, where it is negative, to the
+/// resolution of doubles. The method is the Illinois variant of regula falsi, with bisection when that
+/// stalls.
 ///
 /// # Reference
 /// Dowell, Jarratt, BIT 11 (1971) 168.

@@ -1,4 +1,4 @@
-//! A system: the nominal oscillator with effects.
+//! System: the nominal oscillator with effects.
 
 use crate::active::Active;
 use crate::error::DynamicsError;
@@ -10,7 +10,7 @@ use crate::registry::{Effect, SystemEffect};
 use crate::scalar::Rounded;
 use serde::{Deserialize, Serialize};
 
-/// A nominal oscillator together with effects that act in it.
+/// Nominal oscillator together with effects that act in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Raw", into = "Raw")]
 pub struct System {
@@ -26,7 +26,7 @@ struct Raw {
     effects: Vec<Active>,
 }
 
-/// Where a motion starts, at the first of the times asked for.
+/// Start of a motion, at the first of the requested times.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
@@ -38,14 +38,14 @@ pub struct Start {
 }
 
 impl Start {
-    /// A release from rest.
+    /// Creates a release from rest.
     #[must_use]
     pub const fn release(position: f64) -> Self {
         Self { position, velocity: 0.0 }
     }
 
-    /// Position beyond which a motion counts as running away: a hundred thousand times the release, or that many
-    /// units.
+    /// Returns the position beyond which a motion counts as diverging: a hundred thousand times the release,
+    /// or that many units.
     pub(crate) fn bound(&self) -> f64 {
         1e5 * self.position.abs().max(1.0)
     }
@@ -61,12 +61,12 @@ impl Start {
 }
 
 impl System {
-    /// A nominal oscillator with effects; none is legal.
+    /// Creates a system from a nominal oscillator and effects; the list may be empty.
     ///
     /// # Errors
-    /// [`DynamicsError::Duplicate`] where an effect is given twice, [`DynamicsError::NotInTheSystem`] for an
-    /// effect of the measuring chain, [`DynamicsError::Contradiction`] where parameters contradict each
-    /// other.
+    /// Returns [`DynamicsError::Duplicate`] if an effect is given twice, [`DynamicsError::NotInTheSystem`]
+    /// for an effect of the measurement chain, and [`DynamicsError::Contradiction`] if parameters contradict
+    /// each other.
     pub fn new(nominal: Nominal, effects: Vec<Active>) -> Result<Self, DynamicsError> {
         for (index, active) in effects.iter().enumerate() {
             let effect = acting(active)?;
@@ -78,29 +78,30 @@ impl System {
         Ok(Self { nominal, effects })
     }
 
-    /// The nominal oscillator.
+    /// Returns the nominal oscillator.
     #[must_use]
     pub fn nominal(&self) -> &Nominal {
         &self.nominal
     }
 
-    /// The effects, in the order given.
+    /// Returns the effects, in the order given.
     #[must_use]
     pub fn effects(&self) -> &[Active] {
         &self.effects
     }
 
-    /// Number of hidden state variables of all effects together, such as the states of hysteresis and of a second body.
+    /// Returns the number of hidden state variables of all effects together, such as those of hysteresis and
+    /// of a second body.
     #[must_use]
     pub fn hidden_states(&self) -> usize {
         self.effects.iter().map(|active| active.effect().description().hidden_states).sum()
     }
 
-    /// Refuses a release from rest inside the dead zone of the spring where nothing else pulls: nothing would
+    /// Rejects a release from rest inside the spring's dead zone if nothing else pulls, since nothing would
     /// move.
     ///
     /// # Errors
-    /// [`DynamicsError::ReleaseInsideDeadZone`].
+    /// Returns [`DynamicsError::ReleaseInsideDeadZone`].
     pub fn check_release(&self, start: Start) -> Result<(), DynamicsError> {
         let effect = |wanted: SystemEffect| {
             self.effects.iter().find(|active| active.effect() == Effect::System(wanted))
@@ -116,7 +117,7 @@ impl System {
         let field = self.field();
         let hidden = field.relaxed(start.position, start.velocity);
         let state = State { time: 0.0, position: start.position, velocity: 0.0, hidden, input: 0.0 };
-        // The spring's own torque and what the dead zone takes off it cancel, but for rounding.
+        // The spring's own torque and the part that the dead zone removes cancel, except for rounding.
         let spring = field.spring(&state).abs();
         if field.torque(&state, &field.moving(&state, 0.0)).abs() <= 1e-12 * spring {
             return Err(DynamicsError::ReleaseInsideDeadZone { half_width, release });
@@ -142,10 +143,11 @@ impl System {
     }
 }
 
-/// Excess of the torque over the dry friction's hold that counts as balance, relative to the hold.
+/// Excess of the torque over the holding torque of dry friction that counts as balance, relative to the
+/// latter.
 const BALANCE: f64 = 1e-12;
 
-/// How many times the bound on its rounding a torque may be off: a series groups its terms otherwise than the law does.
+/// Factor on the bound for a torque's rounding error: a series groups its terms differently from the law.
 pub(crate) const ROUNDING: f64 = 4.0;
 
 fn acting(active: &Active) -> Result<SystemEffect, DynamicsError> {
@@ -158,12 +160,12 @@ fn acting(active: &Active) -> Result<SystemEffect, DynamicsError> {
 }
 
 impl Field<f64> {
-    /// Whether a reversal ends the smooth piece.
+    /// Returns `true` if a reversal ends the smooth piece.
     pub(crate) fn directed(&self) -> bool {
         self.terms.iter().any(|term| term.effect.directed())
     }
 
-    /// The hidden state of effects that are relaxed and move along with the body.
+    /// Returns the hidden state of effects that are relaxed and move along with the body.
     pub(crate) fn relaxed(&self, position: f64, velocity: f64) -> [f64; SYSTEM_HIDDEN] {
         let mut hidden = [0.0; SYSTEM_HIDDEN];
         for term in &self.terms {
@@ -176,8 +178,8 @@ impl Field<f64> {
         hidden
     }
 
-    /// The mode that a state is in, about to move in its direction of motion or, at rest, where the torque
-    /// pushes it beyond the dry friction's hold.
+    /// Returns the mode of a state: moving in its direction or, at rest, in the direction in which the torque
+    /// exceeds the holding torque of dry friction.
     pub(crate) fn mode(&self, state: &State<f64>) -> Mode {
         if state.velocity != 0.0 {
             return self.moving(state, state.velocity.signum());
@@ -185,22 +187,23 @@ impl Field<f64> {
         let stuck = self.moving(state, 0.0);
         let torque = self.torque(state, &stuck);
         match self.holding_torque() {
-            // A balance to rounding holds: whether it is about to break is seen from how the torque goes on.
+            // A balance to rounding holds; the further course of the torque shows if the body is about to
+            // break away.
             Some(holding) if torque.abs() <= holding + self.balance(state) => stuck,
             _ if torque < 0.0 => self.moving(state, -1.0),
             _ => self.moving(state, 1.0),
         }
     }
 
-    /// By how much a torque may miss the dry friction's hold and still be in balance with it, in N·m: what is left of
-    /// torques that cancel is rounding. At rest only.
+    /// Returns the amount by which a torque may miss the holding torque of dry friction and still balance it,
+    /// in N·m: the remainder of torques that cancel is rounding. At rest only.
     pub(crate) fn balance(&self, state: &State<f64>) -> f64 {
         let torque = self.over::<Rounded>().torque(&state.over(), &self.moving(state, 0.0));
         // Without dry friction nothing is held, and only rounding is left.
         BALANCE * self.holding_torque().unwrap_or(0.0) + ROUNDING * torque.error
     }
 
-    /// The mode of a state that moves in a direction, or sticks where that is 0.
+    /// Returns the mode of a state that moves in a direction, or sticks if the direction is 0.
     pub(crate) fn moving(&self, state: &State<f64>, direction: f64) -> Mode {
         Mode { direction, regions: self.regions(state, direction) }
     }
@@ -214,7 +217,7 @@ impl Field<f64> {
         regions
     }
 
-    /// Puts hidden states exactly where their regions demand.
+    /// Sets hidden states exactly to the values that their regions require.
     pub(crate) fn settle(&self, mode: &Mode, hidden: &mut [f64; SYSTEM_HIDDEN]) {
         for (term, &region) in self.terms.iter().zip(&mode.regions) {
             let states = term.effect.description().hidden_states;
@@ -230,7 +233,7 @@ impl Field<f64> {
     }
 }
 
-/// The input's torque as a function of time, one piece after the other.
+/// Torque of the input as a function of time, one piece after the other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drive<'a> {
     input: Option<&'a Input>,
@@ -246,12 +249,12 @@ impl<'a> Drive<'a> {
         Self { input, index, gain, delay }
     }
 
-    /// Time at which the present piece ends, and the next begins.
+    /// Returns the time at which the present piece ends and the next begins.
     pub(crate) fn until(&self) -> f64 {
         self.input.map_or(f64::INFINITY, |input| input.piece(self.index).until + self.delay)
     }
 
-    /// Raw input value and slope at a time on the present piece.
+    /// Returns the raw input value and its slope at a time on the present piece.
     pub(crate) fn raw(&self, time: f64) -> (f64, f64) {
         self.input.map_or((0.0, 0.0), |input| {
             let piece = input.piece(self.index);
@@ -259,7 +262,7 @@ impl<'a> Drive<'a> {
         })
     }
 
-    /// Torque at a time on the present piece.
+    /// Returns the torque at a time on the present piece.
     pub(crate) fn torque(&self, time: f64) -> f64 {
         self.gain * self.raw(time).0
     }

@@ -1,4 +1,4 @@
-//! The registry, and every law against what its description says.
+//! Tests of the registry, and of every law against its description.
 
 use crate::fixtures::{CASES, EVERYTHING};
 use crate::scalar::{Complex, Dual, Scalar};
@@ -8,7 +8,7 @@ use crate::{
 };
 use std::collections::BTreeSet;
 
-/// The other tests go through [`CASES`] and [`EVERYTHING`]: an effect that has no strength there is not tested.
+/// The other tests run over [`CASES`] and [`EVERYTHING`]: an effect that has no strength there is not tested.
 #[test]
 fn every_effect_of_the_system_has_a_strength_in_the_tests() {
     let of_kind = REGISTRY.iter().filter(|effect| effect.description().kind == Kind::System);
@@ -123,7 +123,7 @@ fn dissipative_laws_take_energy_out_whatever_the_state() {
         let own = values(*effect);
         for velocity in [-3.0, -0.2, 0.2, 3.0] {
             let mut at = moment(0.5, velocity, 0, 0.0, NONE);
-            // A contact that slides; what it stores while bending comes back.
+            // A contact that slides; energy that it stores while bending is returned.
             at.hidden = [velocity.signum(), 0.0];
             let power = effect.torque(&own, &at) * velocity;
             assert!(power < 0.0, "{effect:?} at {velocity}: {power}");
@@ -217,7 +217,7 @@ fn the_contact_never_pulls() {
     }
 }
 
-/// Nominal coefficients, an effect, and the words that refuse them.
+/// Nominal coefficients, an effect, and the words of the error that rejects them.
 type Refused<'a> = ([f64; 4], (&'a str, &'a [f64]), &'a str);
 
 #[test]

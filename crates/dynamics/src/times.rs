@@ -2,7 +2,7 @@
 
 use crate::error::DynamicsError;
 
-/// Refuses times that are not finite or decrease.
+/// Rejects times that are not finite or that decrease.
 pub(crate) fn check(times: &[f64]) -> Result<(), DynamicsError> {
     let mut before = f64::NEG_INFINITY;
     for (index, &value) in times.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Units of what a system is made of.
+//! Units of a system's numbers.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,20 +13,20 @@ pub enum Coordinate {
     Displacement,
 }
 
-/// Quantity that the sensor observes of the motion.
+/// Quantity of the motion that the sensor observes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Observed {
-    /// The position itself: an encoder.
+    /// Position itself: an encoder.
     #[default]
     Position,
-    /// Its first derivative: a gyroscope, a laser vibrometer.
+    /// First derivative of the position: a gyroscope, a laser vibrometer.
     Velocity,
-    /// Its second derivative: an accelerometer.
+    /// Second derivative of the position: an accelerometer.
     Acceleration,
 }
 
-/// The system of units that a system's numbers are written in.
+/// System of units in which a system's numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Units {
     /// SI, inertia in kg m² or kg.
@@ -35,7 +35,7 @@ pub enum Units {
     PerInertia(Coordinate),
 }
 
-/// The physical quantity that a parameter measures; its unit follows from the system's [`Units`].
+/// Physical quantity that a parameter measures; its unit follows from the system's [`Units`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Moment of inertia, or mass.
@@ -64,7 +64,7 @@ pub enum Quantity {
     DeflectionDamping,
     /// Reciprocal of a velocity.
     InverseVelocity,
-    /// Radians of a wave to a radian or meter of the position; of an angle, waves in a turn.
+    /// Radians of a wave per radian or meter of the position; for an angle, waves per turn.
     Wavenumber,
     /// A duration.
     Time,
@@ -76,16 +76,17 @@ pub enum Quantity {
     Angle,
     /// Quantity that the sensor observes: a position, or its first or second derivative.
     Observed,
-    /// Change of what the sensor observes, per second.
+    /// Change of the observed quantity per second.
     ObservedPerTime,
-    /// A share, or a relative change.
+    /// Share, or relative change.
     Ratio,
     /// A number of samples.
     Samples,
 }
 
 impl Quantity {
-    /// The unit's symbol, such as `N m/rad`; for [`Quantity::Observed`] that of a sensor of positions.
+    /// Returns the unit's symbol, such as `N m/rad`; for [`Quantity::Observed`] that of a sensor of
+    /// positions.
     #[must_use]
     pub const fn unit(self, units: Units) -> &'static str {
         use Coordinate::{Angle, Displacement};
@@ -147,8 +148,9 @@ impl Quantity {
         }
     }
 
-    /// The unit's symbol where the sensor observes positions, velocities or accelerations: those of
-    /// [`Quantity::Observed`] and [`Quantity::ObservedPerTime`] depend on it, every other is [`Self::unit`]'s.
+    /// Returns the unit's symbol for a sensor that observes positions, velocities or accelerations. The units
+    /// of [`Quantity::Observed`] and [`Quantity::ObservedPerTime`] depend on it, all others are those of
+    /// [`Self::unit`].
     #[must_use]
     pub fn unit_seen(self, units: Units, observed: Observed) -> &'static str {
         let derivatives = match observed {

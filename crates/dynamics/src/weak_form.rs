@@ -1,19 +1,21 @@
 //! Test functions of the weak form.
 //!
-//! An equation of motion times a smooth function that vanishes at both ends of a window is integrated by parts until nothing but
-//! that function is differentiated: ∫φ·θ̈ dt = ∫φ̈·θ dt, ∫φ·θ̇ dt = −∫φ̇·θ dt. No reading is.
+//! An equation of motion is multiplied by a smooth function that vanishes at both ends of a window, and
+//! integrated by parts until only that function is differentiated and no reading:
+//! ∫φ·θ̈ dt = ∫φ̈·θ dt, ∫φ·θ̇ dt = −∫φ̇·θ dt.
 //!
 //! # Reference
-//! M. Shinbrot, On the analysis of linear and nonlinear systems, Trans. ASME 79 (1957) 547; D. A. Messenger, D. M. Bortz,
-//! Multiscale Modeling and Simulation 19 (2021) 1474.
+//! M. Shinbrot, On the analysis of linear and nonlinear systems, Trans. ASME 79 (1957) 547; D. A. Messenger,
+//! D. M. Bortz, Multiscale Modeling and Simulation 19 (2021) 1474.
 
-/// The test function φ = (1 − s²)ⁿ with its first and second derivatives with respect to s; 0 outside of −1 to 1.
+/// Computes the test function φ = (1 − s²)ⁿ and its first and second derivative with respect to s; all are 0
+/// outside of −1 to 1.
 ///
-/// `exponent` is n, from 2. In a window of half width h about t₀, s is (t − t₀)/h, φ̇ the second number over h, and φ̈ the third
-/// over h².
+/// `exponent` is n, at least 2. In a window of half width h about t₀, s is (t − t₀)/h, φ̇ is the second
+/// number over h, and φ̈ the third over h².
 ///
 /// # Example
-/// At the center a window of a quartic is 1, level, and bends by −2n:
+/// At the center, the function with exponent n is 1, its slope is 0, and its second derivative is −2n:
 ///
 /// ```
 /// assert_eq!(dynamics::weak_form::test_function(0.0, 4), [1.0, 0.0, -8.0]);

@@ -1,13 +1,13 @@
-//! What a pipeline gives.
+//! Envelope of a record: the result of a pipeline.
 
 use crate::error::EnvelopeError;
 
 /// Fewest peaks that give a line and its error.
 pub(crate) const FEWEST_PEAKS: usize = 3;
 
-/// The decay of a record's peaks: all that an estimator of the decay rate gets to see.
+/// Decay of a record's peaks: the only data that an estimator of the decay rate receives.
 ///
-/// Times start at the first peak. Invariants: at least three peaks, finite, times increasing.
+/// Times start at the first peak. Invariants: at least three peaks, finite values, increasing times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Envelope {
     times_s: Vec<f64>,
@@ -17,23 +17,24 @@ pub struct Envelope {
     ratio: RatioDefinition,
 }
 
-/// How a damping ratio follows from a decay rate λ and the angular frequency ω of the damped swing.
+/// Definition of the damping ratio from a decay rate λ and the angular frequency ω of the damped swing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RatioDefinition {
-    /// λ/ω: the paper's, for small damping; too large by ζ²/2 of itself.
+    /// λ/ω: the paper's definition, for small damping; relatively too large by ζ²/2.
     #[default]
     SmallDamping,
-    /// λ/√(λ² + ω²): the logarithmic decrement's, exact for viscous damping.
+    /// λ/√(λ² + ω²): the logarithmic decrement's definition, exact for viscous damping.
     LogarithmicDecrement,
 }
 
 impl Envelope {
-    /// Makes an envelope from times in seconds, natural logarithms of amplitudes, and the angular
-    /// frequency in rad/s; the times are shifted to start at zero.
+    /// Creates an envelope from times in seconds, natural logarithms of amplitudes, and the angular frequency
+    /// in rad/s. The times are shifted to start at zero.
     ///
     /// # Errors
-    /// [`EnvelopeError::TooFewPeaks`] for fewer than three usable peaks: peaks that are not finite, or
-    /// whose time does not increase, make the envelope unusable as a whole.
+    /// [`EnvelopeError::TooFewPeaks`] for fewer than three peaks. It is returned as well, with 0 peaks found,
+    /// if a value is not finite, the times do not increase, the lengths differ, or the frequency is not above
+    /// 0.
     pub fn new(times_s: Vec<f64>, log_amplitudes: Vec<f64>, omega_rad_s: f64) -> Result<Self, EnvelopeError> {
         let finite = times_s.iter().chain(&log_amplitudes).all(|number| number.is_finite());
         let increasing = times_s.iter().zip(times_s.iter().skip(1)).all(|(one, next)| one < next);
@@ -51,15 +52,16 @@ impl Envelope {
                 remedy: "Expected finite peaks at increasing times and a positive frequency.".to_owned(),
             });
         }
-        // There are three at least: checked above.
+        // At least three entries: checked above.
         let first = times_s.first().copied().unwrap_or_default();
         let times_s = times_s.into_iter().map(|time| time - first).collect();
         let ratio = RatioDefinition::default();
         Ok(Self { times_s, log_amplitudes, omega_rad_s, log_std_errors: None, ratio })
     }
 
-    /// The same with the standard error that the sensor's noise leaves in each ln A. Left out where their number is another
-    /// or one of them is not a positive number.
+    /// Returns this envelope with the standard error that the sensor's noise leaves in each ln A. The errors
+    /// are dropped if their number differs from that of the peaks or one of them is not a finite number above
+    /// 0.
     #[must_use]
     pub fn with_log_std_errors(self, errors: Vec<f64>) -> Self {
         let usable =
@@ -67,31 +69,31 @@ impl Envelope {
         Self { log_std_errors: usable.then_some(errors), ..self }
     }
 
-    /// The same with another definition of the damping ratio.
+    /// Returns this envelope with another definition of the damping ratio.
     #[must_use]
     pub fn with_ratio(self, ratio: RatioDefinition) -> Self {
         Self { ratio, ..self }
     }
 
-    /// Number of peaks.
+    /// Returns the number of peaks.
     #[must_use]
     pub fn len(&self) -> usize {
         self.times_s.len()
     }
 
-    /// Whether there are no peaks: never so, by the invariants.
+    /// Returns `true` if there are no peaks, which the invariants exclude.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.times_s.is_empty()
     }
 
-    /// Times of the peaks after the first one, in seconds, increasing.
+    /// Returns the times of the peaks after the first one, in seconds, increasing.
     #[must_use]
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    /// Time from the first peak to the last one, in seconds, above 0.
+    /// Returns the time from the first peak to the last one, in seconds, above 0.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         debug_assert!(self.len() >= FEWEST_PEAKS, "checked when it was made");
@@ -99,26 +101,26 @@ impl Envelope {
         self.times_s.last().copied().unwrap_or(0.0)
     }
 
-    /// Natural logarithms of the peaks' amplitudes, the amplitude in the record's unit.
+    /// Returns the natural logarithms of the peaks' amplitudes, with the amplitude in the record's unit.
     #[must_use]
     pub fn log_amplitudes(&self) -> &[f64] {
         &self.log_amplitudes
     }
 
-    /// Angular frequency, 2π over the median period, in rad/s.
+    /// Returns the angular frequency, 2π over the median period, in rad/s.
     #[must_use]
     pub fn omega_rad_s(&self) -> f64 {
         self.omega_rad_s
     }
 
-    /// Standard error of each ln A from the sensor's noise, where the pipeline knows it: one entry a peak, above 0. It grows
-    /// as 1/A.
+    /// Returns the standard error of each ln A from the sensor's noise, one entry per peak, above 0; `None`
+    /// if the pipeline does not know it. It grows as 1/A.
     #[must_use]
     pub fn log_std_errors(&self) -> Option<&[f64]> {
         self.log_std_errors.as_deref()
     }
 
-    /// Damping ratio that belongs to a decay rate in 1/s, by the envelope's [`RatioDefinition`].
+    /// Returns the damping ratio for a decay rate in 1/s, by the envelope's [`RatioDefinition`].
     #[must_use]
     pub fn damping_ratio(&self, decay_rate: f64) -> f64 {
         match self.ratio {
@@ -127,8 +129,8 @@ impl Envelope {
         }
     }
 
-    /// Standard error of the damping ratio from a decay rate and its standard error, both in 1/s, the frequency taken as
-    /// known.
+    /// Returns the standard error of the damping ratio for a decay rate and its standard error, both in 1/s.
+    /// The frequency is taken as exact.
     #[must_use]
     pub fn damping_ratio_error(&self, decay_rate: f64, std_error: f64) -> f64 {
         match self.ratio {
@@ -140,22 +142,23 @@ impl Envelope {
     }
 }
 
-/// An envelope and what was found on the way to it.
+/// Envelope, with other results of its extraction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extraction {
-    /// The envelope.
+    /// Envelope of the record.
     pub envelope: Envelope,
     /// Time of the first peak after the first sample, in seconds.
     pub first_peak_s: f64,
     /// Median period, in seconds.
     pub period_s: f64,
-    /// The rest position that was removed, in the record's unit.
+    /// Rest position that was removed, in the record's unit.
     pub offset: f64,
-    /// Samples that the peaks were looked for in.
+    /// Number of samples that the peaks were searched in.
     pub samples: usize,
 }
 
-/// The median; of an even number of entries the mean of the middle two. `None` for no entries.
+/// Returns the median, which is the mean of the middle two for an even number of entries. `None` for no
+/// entries.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -166,7 +169,7 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     Some((values.get(middle.checked_sub(1)?)? + upper) / 2.0)
 }
 
-/// Differences between entries `lag` apart.
+/// Returns the differences between entries `lag` apart.
 pub(crate) fn differences(values: &[f64], lag: usize) -> Vec<f64> {
     values.iter().zip(values.iter().skip(lag)).map(|(one, next)| next - one).collect()
 }

@@ -1,8 +1,8 @@
-//! Why a record has no envelope.
+//! Errors of the extraction of an envelope.
 
 use thiserror::Error;
 
-/// Why a record has no envelope.
+/// Reason why a record has no envelope.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EnvelopeError {
     /// Fewer peaks than a decay rate needs.
@@ -11,13 +11,13 @@ pub enum EnvelopeError {
         if *found == 1 { "" } else { "s" }
     )]
     TooFewPeaks {
-        /// The pipeline.
+        /// Name of the pipeline.
         pipeline: &'static str,
-        /// Peaks found.
+        /// Number of peaks found.
         found: usize,
         /// Fewest peaks that give a line and its error.
         needed: usize,
-        /// What to try.
+        /// Advice to the user.
         remedy: String,
     },
     /// A peak at or below the rest position has no logarithm.
@@ -29,9 +29,9 @@ pub enum EnvelopeError {
     AmplitudeNotPositive {
         /// Number of the peak, from 1.
         number: usize,
-        /// Its time after the first sample, in seconds.
+        /// Time of the peak after the first sample, in seconds.
         time_s: f64,
-        /// Its signed distance from the rest position.
+        /// Signed distance of the peak from the rest position.
         amplitude: f64,
         /// Unit of the amplitude.
         unit: &'static str,
@@ -44,24 +44,24 @@ pub enum EnvelopeError {
     GridTooFine {
         /// Length of the record, in seconds.
         duration_s: f64,
-        /// Step asked for, in seconds.
+        /// Step from the settings, in seconds.
         step_s: f64,
-        /// Points that would result.
+        /// Number of points that would result.
         points: f64,
         /// Most points allowed.
         most: usize,
     },
-    /// A smoothing window that does not fit.
+    /// A smoothing window does not fit the data.
     #[error(
         "a Savitzky-Golay window of {window} samples with order {order} does not fit {samples} \
          samples; expected an odd window above the order and at most the samples"
     )]
     SmoothingWindow {
-        /// Window asked for, in samples.
+        /// Window from the settings, in samples.
         window: usize,
-        /// Polynomial order asked for.
+        /// Polynomial order from the settings.
         order: usize,
-        /// Samples there are.
+        /// Number of samples in the data.
         samples: usize,
     },
 }

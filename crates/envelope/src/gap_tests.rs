@@ -1,4 +1,4 @@
-//! Records with gaps: nothing is read off samples that only a gap has made neighbors.
+//! Tests of records with gaps: samples on both sides of a gap never count as neighbors.
 
 use crate::{Extraction, PaperPipeline, RecommendedPipeline};
 use record::{Clock, ClockChoice, CsvColumns, Missing, ReadOptions, read_text};
@@ -6,13 +6,15 @@ use record::{Clock, ClockChoice, CsvColumns, Missing, ReadOptions, read_text};
 const LAMBDA: f64 = 0.13;
 const NOISE: f64 = 1e-3;
 
-/// Pseudo-random numbers of standard deviation 1 without a generator: the sum of twelve uniform ones less six.
+/// Returns pseudo-random numbers of standard deviation 1 without a generator: the sum of twelve uniform ones
+/// minus six.
 fn noise(index: u32) -> f64 {
     let uniform = |at: u32| (f64::from(at) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0);
     (0..12).map(|part| uniform(12 * index + part)).sum::<f64>() - 6.0
 }
 
-/// 20 s of a decay at 200 samples a second, a third of a second of it without numbers from `start` on.
+/// Returns 20 s of a decay at 200 samples per second, with a third of a second without numbers from `start`
+/// on.
 fn text(omega: f64, start: f64) -> String {
     (0..4000).fold("angle_rad\n".to_owned(), |text, index| {
         let time = f64::from(index) / 200.0;
@@ -50,7 +52,8 @@ fn paper(record: &record::Record, clock: &Clock) -> Extraction {
     pipeline.extract(record, clock).unwrap()
 }
 
-/// Decay rate with its standard error by least squares, and the largest distance of a peak from that line.
+/// Returns the decay rate with its standard error by least squares, and the largest distance of a peak from
+/// that line.
 fn line(found: &Extraction) -> (f64, f64, f64) {
     let (times, logs) = (found.envelope.times_s(), found.envelope.log_amplitudes());
     let count = times.len() as f64;
@@ -62,7 +65,7 @@ fn line(found: &Extraction) -> (f64, f64, f64) {
     (-slope, error, left.iter().fold(0.0, |most, r| f64::max(most, r.abs())))
 }
 
-/// Whatever phase of a slow or a fast swing the gap takes away.
+/// The gap is tested at twelve phases of slow and fast swings.
 #[test]
 fn a_gap_makes_no_peak_and_moves_none() {
     type Pipeline = fn(&record::Record, &Clock) -> Extraction;
@@ -91,7 +94,7 @@ fn a_gap_makes_no_peak_and_moves_none() {
     }
 }
 
-/// Rows that are dropped were never there: what follows is a third of a second early, as it was asked for.
+/// Dropped rows leave no gap: with even sampling the samples after them move a third of a second earlier.
 #[test]
 fn dropped_rows_close_up() {
     let text = text(8.0, 4.0);
@@ -100,7 +103,8 @@ fn dropped_rows_close_up() {
     assert!((segment - drop - 1.0 / 3.0).abs() < 0.05, "{segment} {drop}");
 }
 
-/// A log whose second half is filled up with zeros: its noise had been taken for none, and every wiggle for a swing.
+/// A log whose second half is filled up with zeros: the noise was once taken as zero, and every wiggle as a
+/// swing.
 #[test]
 fn a_log_filled_up_with_zeros_has_the_noise_of_its_moving_part() {
     let text = (0..12_000).fold("angle_rad\n".to_owned(), |text, index| {

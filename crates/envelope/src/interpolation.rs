@@ -1,15 +1,15 @@
 //! Linear interpolation on an even grid.
 
-/// Values at the times `0, step, 2·step, …` below `last`, interpolated between (time, value) pairs.
+/// Returns values at the times `0, step, 2·step, …` below the last of `times`, by linear interpolation.
 ///
-/// Times must not decrease and start at 0. Where a time repeats, the value jumps there: a grid point on
-/// the repeated time gets the last of its values, as `numpy.interp` has it.
+/// Times must start at 0 and not decrease. Where a time repeats, the value jumps: a grid point at the
+/// repeated time gets the last of its values, as in `numpy.interp`.
 #[must_use]
 pub fn resample(times: &[f64], values: &[f64], step: f64) -> Vec<f64> {
     let Some(&last) = times.last() else {
         return Vec::new();
     };
-    // The number of points of numpy.arange(0, last, step).
+    // Number of points of numpy.arange(0, last, step).
     let count = (last / step).ceil().max(0.0) as usize;
     let mut segments = times
         .iter()

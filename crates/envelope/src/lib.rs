@@ -1,9 +1,9 @@
-//! From a record to the decay of its peaks: smoothing, peaks, offset, period.
+//! Extraction of the decay of a record's peaks: smoothing, peaks, offset, period.
 //!
-//! Two pipelines, by name. [`PaperPipeline`] does what the paper did, step by step, so that its numbers
-//! can be checked. [`RecommendedPipeline`] is what we would do: a believed clock, no resampling, peak
-//! positions between the samples, both half-cycles. Either gives an [`Envelope`]: all that an estimator
-//! of the decay rate gets to see.
+//! There are two pipelines. [`PaperPipeline`] repeats the paper's steps, so that its numbers can be checked.
+//! [`RecommendedPipeline`] is the one we recommend: a believed clock, no resampling, peak positions between
+//! the samples, both half-cycles. Both give an [`Envelope`], the only data that an estimator of the decay
+//! rate receives.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

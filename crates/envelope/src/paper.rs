@@ -1,4 +1,4 @@
-//! The paper's pipeline.
+//! Envelope pipeline of the paper.
 
 use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, differences, median};
 use crate::error::EnvelopeError;
@@ -13,22 +13,22 @@ use std::f64::consts::TAU;
 /// Most points of the interpolation grid.
 const MOST_POINTS: usize = 50_000_000;
 
-/// The paper's pipeline: linear interpolation to an even step, smoothing, removal of the late-time mean,
+/// Pipeline of the paper: linear interpolation to an even step, smoothing, removal of the late-time mean,
 /// peaks with a least distance and prominence, upper half-cycles only.
 ///
-/// With the defaults and the host's clock it gives the numbers of the paper's Table 3 on its record.
-/// Interpolating on stamps that repeat puts the jumps of the host's bursts into the values; that is
-/// part of what the paper did, and part of why [`crate::RecommendedPipeline`] gives other numbers.
+/// With the defaults and the host's clock it gives the numbers of the paper's Table 3 on the paper's record.
+/// Interpolation on repeated time stamps puts the jumps of the host's bursts into the values. The paper did
+/// so, and this is one reason why [`crate::RecommendedPipeline`] gives other numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PaperPipeline {
     /// Step of the interpolation grid, in seconds.
     pub interpolation_step_s: f64,
-    /// Window of the Savitzky–Golay smoothing, in grid points; 0 for none.
+    /// Window of the Savitzky–Golay smoothing, in grid points; 0 for no smoothing.
     pub smoothing_window: usize,
     /// Order of the smoothing polynomial.
     pub smoothing_order: usize,
-    /// Share of the record's end whose mean is the rest position.
+    /// Share of the grid points at the end whose mean is the rest position.
     pub late_fraction: f64,
     /// Least distance between peaks, in grid points.
     pub peak_distance: usize,
@@ -40,14 +40,14 @@ impl PaperPipeline {
     /// Extracts the envelope of a record under a clock.
     ///
     /// # Errors
-    /// [`EnvelopeError`]: fewer than three peaks, a peak below the rest position, a grid or a smoothing
-    /// window that does not fit.
+    /// [`EnvelopeError`] for fewer than three peaks, a peak at or below the rest position, or a grid or a
+    /// smoothing window that does not fit.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
         let step = self.interpolation_step_s;
         let pieces = self.smooth(record, clock)?;
 
-        // At least one point, at most all of them. The product is a rounding error above a whole number
-        // for some lengths, which must not add a point.
+        // At least one point, at most all of them. For some lengths the product lies a rounding error above a
+        // whole number, which must not add a point.
         let points: usize = pieces.iter().map(|piece| piece.values.len()).sum();
         let late = (points as f64 * self.late_fraction - 1e-9).ceil() as usize;
         let late = late.clamp(1, points.max(1));
@@ -74,7 +74,7 @@ impl PaperPipeline {
         debug_assert!(peak_times.len() >= FEWEST_PEAKS, "fewer are refused above");
         // Never absent: asserted above.
         let period_s = median(differences(&peak_times, 1)).unwrap_or(0.0);
-        // Likewise.
+        // Never absent either.
         let first_peak_s = peak_times.first().copied().unwrap_or(0.0);
         Ok(Extraction {
             envelope: Envelope::new(peak_times, log_amplitudes, TAU / period_s)?,
@@ -85,7 +85,7 @@ impl PaperPipeline {
         })
     }
 
-    /// Numbers of the peaks' points with their heights over the rest position.
+    /// Returns the grid indices of the peaks with their heights above the rest position.
     fn peaks(&self, pieces: Vec<Piece>, offset: f64) -> Vec<(usize, f64)> {
         let of_piece = |piece: Piece| {
             let values: Vec<f64> = piece.values.iter().map(|value| value - offset).collect();
@@ -109,13 +109,14 @@ impl PaperPipeline {
         }
     }
 
-    /// The record on an even grid from its first sample on, smoothed: one piece, or one between any two gaps of rows
-    /// without a value that are longer than three usual steps and half a peak's least distance.
+    /// Returns the smoothed record on an even grid that starts at its first sample. If the record has rows
+    /// without a value, it is cut at steps in time that are longer than three usual steps and longer than
+    /// half the least distance of peaks.
     fn smooth(&self, record: &Record, clock: &Clock) -> Result<Vec<Piece>, EnvelopeError> {
         let first = clock.start_s();
         let times: Vec<f64> = clock.times_s.iter().map(|time| time - first).collect();
         let step = self.interpolation_step_s;
-        // A clock lies over two samples at least.
+        // A clock has at least two samples.
         let duration = times.last().copied().unwrap_or_default();
         if duration / step > MOST_POINTS as f64 {
             return Err(EnvelopeError::GridTooFine {
@@ -141,7 +142,7 @@ impl PaperPipeline {
             };
             let (from, to) = ((first / step).ceil() as usize, (last / step).floor() as usize + 1);
             let Some(values) = grid.get(from..to.min(grid.len())) else { continue };
-            // What is shorter than a window says nothing of its own.
+            // A piece shorter than a window cannot be smoothed and is left out.
             if values.len() >= self.smoothing_window.max(1) {
                 pieces.push(Piece { first: from, values: smoothed(values)? });
             }
@@ -150,9 +151,9 @@ impl PaperPipeline {
     }
 }
 
-/// Points of the grid without a gap between.
+/// Grid points without a gap between them.
 struct Piece {
-    /// Number of the first among all points of the grid.
+    /// Index of the first one among all grid points.
     first: usize,
     values: Vec<f64>,
 }

@@ -1,7 +1,7 @@
-//! Peaks with a least distance and a least prominence, as `scipy.signal.find_peaks` defines them.
+//! Peaks with a least distance and a least prominence, as defined by `scipy.signal.find_peaks`.
 
-/// Indices of the local maxima: samples above both neighbors. Of a flat top, the middle one (the left
-/// one of two). The first and the last sample are none.
+/// Returns the indices of the local maxima: samples above both neighbors. For a flat top it is the middle
+/// sample (the left one of two). The first and the last sample never count.
 #[must_use]
 pub fn local_maxima(values: &[f64]) -> Vec<usize> {
     let mut maxima = Vec::new();
@@ -17,10 +17,10 @@ pub fn local_maxima(values: &[f64]) -> Vec<usize> {
     maxima
 }
 
-/// Prominence of each given peak: its height above the higher of the two lowest points that lie between
-/// it and the next strictly higher sample to the left and to the right (or the record's end).
+/// Returns the prominence of each given peak: its height above the higher of the two lowest points that lie
+/// between it and the next strictly higher sample to the left and to the right (or the record's end).
 ///
-/// Linear in the number of samples, where the textbook's walk is quadratic on a decaying record.
+/// The run time is linear in the number of samples; the textbook's walk is quadratic on a decaying record.
 #[must_use]
 pub fn prominences(values: &[f64], peaks: &[usize]) -> Vec<f64> {
     let left = lowest_since_higher(values.iter().copied());
@@ -32,9 +32,9 @@ pub fn prominences(values: &[f64], peaks: &[usize]) -> Vec<f64> {
         .collect()
 }
 
-/// For each sample the lowest value since the last strictly higher one.
+/// Returns for each sample the lowest value since the last strictly higher one.
 fn lowest_since_higher(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    // Samples still in view, each with the lowest value behind it: heights strictly decreasing.
+    // Samples that are still in view, each with the lowest value behind it; their heights strictly decrease.
     let mut view: Vec<(f64, f64)> = Vec::new();
     values
         .map(|value| {
@@ -48,11 +48,11 @@ fn lowest_since_higher(values: impl Iterator<Item = f64>) -> Vec<f64> {
         .collect()
 }
 
-/// Indices of the peaks: local maxima, thinned to be at least `distance` samples apart with the higher
-/// one kept, then those whose prominence is at least `prominence`.
+/// Returns the indices of the peaks: local maxima, thinned to be at least `distance` samples apart with the
+/// higher one kept; then those whose prominence is at least `prominence`.
 ///
-/// The order of the two conditions matters and is scipy's: a peak that is thinned away does not come
-/// back when the peak that displaced it turns out not to be prominent.
+/// The order of the two conditions matters and is scipy's: a peak that is thinned out does not come back if
+/// the peak that displaced it is not prominent enough.
 #[must_use]
 pub fn find_peaks(values: &[f64], distance: usize, prominence: f64) -> Vec<usize> {
     let peaks = keep_distant(values, local_maxima(values), distance);
@@ -68,7 +68,7 @@ pub fn find_peaks(values: &[f64], distance: usize, prominence: f64) -> Vec<usize
 fn keep_distant(values: &[f64], peaks: Vec<usize>, distance: usize) -> Vec<usize> {
     let height = |peak: usize| values.get(peak).copied().unwrap_or(f64::NEG_INFINITY);
     let mut order: Vec<usize> = (0..peaks.len()).collect();
-    // From the highest down; of equal ones the later first.
+    // Highest first; of equal heights the later one first.
     order.sort_by(|&a, &b| {
         let (a_peak, b_peak) = (peaks.get(a).copied(), peaks.get(b).copied());
         let heights = a_peak.map(height).partial_cmp(&b_peak.map(height));
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(local_maxima(&[0.0, 1.0, 1.0]), [] as [usize; 0]);
     }
 
-    /// The definition, walked literally.
+    /// Prominence by its definition, with a literal walk.
     fn prominence_by_walking(values: &[f64], peak: usize) -> f64 {
         let top = values[peak];
         let lowest =

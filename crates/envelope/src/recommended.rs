@@ -1,4 +1,4 @@
-//! The pipeline we would recommend.
+//! Envelope pipeline that we recommend.
 
 use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, RatioDefinition, differences, median};
 use crate::error::EnvelopeError;
@@ -10,63 +10,66 @@ use record::{Clock, Record};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// The recommended pipeline: samples as taken, on a believed clock; both half-cycles; the position and
-/// height of each turning point from a polynomial fitted to the samples around it; the rest position
-/// from the turning points themselves; nothing below the sensor's noise.
+/// Recommended pipeline: samples as taken, on a believed clock; both half-cycles; the position and height of
+/// each turning point from a polynomial fitted to the samples around it; the rest position from the turning
+/// points themselves; nothing below the sensor's noise.
 ///
-/// A gap is a gap: no turning point is read off samples on both sides of a step in time longer than three usual ones and
-/// than half a stretch's half-width.
+/// Turning points are not read across gaps. A gap is a step in time that is longer than three usual steps and
+/// longer than half the polynomial's half-width.
 ///
-/// The decay starts at the largest turning point: what lies before it is the release.
+/// The decay starts at the largest turning point; everything before it is the release.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecommendedPipeline {
     /// Half-width of the polynomial's stretch around a turning point, in periods.
     pub half_width_periods: f64,
-    /// Smallest amplitude used, in units of the noise (the larger of the sensor's noise and its
-    /// quantum's 1/√12).
+    /// Smallest amplitude used, in units of the noise (the larger of the sensor's noise and the quantum
+    /// divided by √12).
     pub floor_in_noise: f64,
 }
 
 impl RecommendedPipeline {
-    /// Settings of a configuration that states none.
+    /// Settings in use if a configuration sets none.
     pub const DEFAULT: Self = Self { half_width_periods: 1.0 / 6.0, floor_in_noise: 8.0 };
 }
 
-/// Most iterations of a singular value decomposition with at most five columns; some ten are usual.
+/// Most iterations of a singular value decomposition with at most five columns; about ten are usual.
 const MOST_SWEEPS: usize = 1000;
 
-/// Prominence that noise alone does not reach, in its standard deviations.
+/// Prominence that noise alone does not reach, in standard deviations of the noise.
 const NO_WIGGLE: f64 = 8.0;
 
-/// Step of the sensor, as a share of the values' range, below which it is none that hides the noise.
+/// Quantum of the sensor, as a share of the values' range, below which rounding cannot hide the noise.
 const FINE: f64 = 1e-4;
 
 /// Half-width of the running median that is compared with the floor, in turning points.
 const NEIGHBORS: usize = 2;
 
-/// A turning point.
+/// Turning point of the motion.
 #[derive(Debug, Clone, Copy)]
 struct Turn {
     time: f64,
     value: f64,
     /// Variance of the value for noise of variance 1.
     leverage: f64,
-    /// What noise of variance 1 adds to the value on average, since a top is looked for; negative at a bottom.
+    /// Mean amount that noise of variance 1 adds to the value because an extremum is picked; negative at a
+    /// bottom.
     lift: f64,
-    /// Standard deviation of the samples about the polynomial; `None` where too few are left over to tell.
+    /// Standard deviation of the samples about the polynomial; `None` for fewer than three degrees of
+    /// freedom.
     scatter: Option<f64>,
-    /// Which of the stretches between gaps it lies in.
+    /// Index of the stretch between gaps that the point lies in.
     stretch: usize,
 }
 
 impl Turn {
-    /// ln A without what the noise adds to it on average: the top that is looked for lies too high by `lift`, the logarithm
-    /// of a scattering height too low by half its relative variance.
+    /// Returns ln A, corrected for the mean effect of noise: an extremum among noisy values is too high by
+    /// `lift`, and the logarithm of a scattered height is too low by half its relative variance.
     fn log_amplitude(&self, center: f64, noise: f64) -> f64 {
         let amplitude = self.value - center;
         let variance = noise * noise;
-        // Where the correction is not small against the error it corrects nothing: an almost flat top has any lift.
+        // A correction that is not small against the error would correct nothing: an almost flat top has an
+        // arbitrary lift.
         let most = noise * self.leverage.sqrt() / amplitude.abs();
         let added = variance * (self.lift / amplitude - self.leverage / (2.0 * amplitude.powi(2)));
         amplitude.abs().ln() - added.clamp(-most, most)
@@ -80,18 +83,19 @@ impl RecommendedPipeline {
     /// [`EnvelopeError::TooFewPeaks`] for fewer than three turning points above the noise.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
         let values = record.values();
-        // Values on no lattice are not rounded.
+        // Values without a lattice are not rounded.
         let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
         let noise = match noise_level(values) {
-            // A log that is filled up with zeros stands still in most of its samples, and moves with noise in the others.
+            // A log that is filled up with zeros is constant in most of its samples; the noise is in the
+            // others.
             0.0 if quantum < FINE * range(values) => noise_level(&moving(values)),
             level => level,
         };
         let noise = noise.max(quantum / 12_f64.sqrt());
         let floor = self.floor_in_noise * noise;
 
-        // Prominence is from valley to top: twice the amplitude. Tops well below the floor are found too, so that the cut is
-        // where the decay reaches the floor and not where noise first does.
+        // Prominence is measured from valley to top, which is twice the amplitude. Tops well below the floor
+        // are found too, so that the cut is where the decay reaches the floor and not where noise first does.
         let least = (2.0 * floor).min(floor.max(NO_WIGGLE * noise));
         let (upper, lower) = tops(values, least);
         let too_few = |found: usize| EnvelopeError::TooFewPeaks {
@@ -144,22 +148,22 @@ fn range(values: &[f64]) -> f64 {
     highest - values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The values without those that equal both neighbors.
+/// Returns the values without those that equal both neighbors.
 fn moving(values: &[f64]) -> Vec<f64> {
     let inner = values.windows(3).filter(|part| part.iter().any(|value| Some(value) != part.first()));
     inner.filter_map(|part| part.get(1).copied()).collect()
 }
 
-/// Tops and bottoms at least so prominent.
+/// Returns the tops and bottoms with at least the given prominence.
 fn tops(values: &[f64], least: f64) -> (Vec<usize>, Vec<usize>) {
     (prominent(values.to_vec(), least), prominent(values.iter().map(|value| -value).collect(), least))
 }
 
-/// Part of the half-width of a turning point's stretch that has to be seen on the side of a gap.
+/// Part of the half-width that must be seen between a turning point and a gap.
 const SEEN: f64 = 0.5;
 
-/// Turning points in the order of their times, each from samples between the same gaps, and none where a gap cuts off
-/// one of its sides.
+/// Returns turning points in the order of their times. Each comes from samples between the same gaps; a point
+/// is left out if a gap cuts off one of its sides.
 fn turning_points(times: &[f64], values: &[f64], least: f64, half_width: f64) -> Vec<Turn> {
     let margin = SEEN * half_width;
     let mut turns = Vec::new();
@@ -182,14 +186,15 @@ fn turning_points(times: &[f64], values: &[f64], least: f64, half_width: f64) ->
     turns
 }
 
-/// Times between turning points on the same side, which are two apart where no gap lies between.
+/// Returns the times between turning points on the same side, which are two apart unless a gap lies between
+/// them.
 fn two_apart(turns: &[Turn]) -> Vec<f64> {
     let pairs = turns.iter().zip(turns.iter().skip(2));
     pairs.filter(|(one, next)| one.stretch == next.stretch).map(|(one, next)| next.time - one.time).collect()
 }
 
-/// Indices of the tops at least so prominent, one for each: where noise makes samples of one top equally high, each of them
-/// is as prominent as the top.
+/// Returns the indices of the tops with at least the given prominence, one per top. Noise can make several
+/// samples of one top equally high, and each of them is as prominent as the top.
 fn prominent(values: Vec<f64>, least: f64) -> Vec<usize> {
     let maxima = local_maxima(&values);
     let prominences = prominences(&values, &maxima);
@@ -208,8 +213,8 @@ fn prominent(values: Vec<f64>, least: f64) -> Vec<usize> {
     tops
 }
 
-/// The turning point near a sample. The highest of noisy samples may lie well beside the top, so the stretch is laid about
-/// the top that a first fit finds.
+/// Returns the turning point near a sample. The highest of noisy samples may lie well beside the top, so the
+/// polynomial is fitted a second time around the top that the first fit finds.
 fn turning_point(times: &[f64], values: &[f64], at: usize, half_width: f64) -> Option<Turn> {
     let first = refine(times, values, at, *times.get(at)?, half_width)?;
     let near =
@@ -217,22 +222,23 @@ fn turning_point(times: &[f64], values: &[f64], at: usize, half_width: f64) -> O
     refine(times, values, near, first.time, half_width).or(Some(first))
 }
 
-/// Standard error of each turning point's ln A. Noise above half a quantum makes rounding errors independent, and they are in
-/// the scatter; below that all samples of a flat top are rounded alike, and no averaging helps.
+/// Returns the standard error of each turning point's ln A. If the noise exceeds half a quantum, rounding
+/// errors are independent and already part of the scatter. Below that, all samples of a flat top are rounded
+/// alike, and averaging does not help.
 fn log_std_errors(decay: &[Turn], center: f64, noise: f64, quantum: f64) -> Vec<f64> {
     let rounding = if noise < quantum / 2.0 { quantum.powi(2) / 12.0 } else { 0.0 };
     let error = |turn: &Turn| (noise.powi(2) * turn.leverage + rounding).sqrt() / (turn.value - center).abs();
     decay.iter().map(error).collect()
 }
 
-/// Time and value of the turning point near a sample: the stationary point of a polynomial fitted to
-/// the samples within `half_width` of `center`. Quartic where there are samples enough, so that the shape of
-/// a swing does not pull the height; else a parabola. `None` where even that has no samples, or where
-/// the stationary point falls outside the stretch.
+/// Returns time and value of the turning point near a sample: the stationary point of a polynomial fitted to
+/// the samples within `half_width` of `center`. The polynomial is a quartic if there are enough samples, so
+/// that the shape of a swing does not bias the height; else a parabola. `None` if there are too few samples
+/// for a parabola, or if the stationary point falls outside the stretch.
 fn refine(times: &[f64], values: &[f64], at: usize, center: f64, half_width: f64) -> Option<Turn> {
     let from = times.partition_point(|&time| time < center - half_width);
     let to = times.partition_point(|&time| time <= center + half_width);
-    // A coarse record may have no neighbors inside the stretch: take the nearest ones then.
+    // A coarse record may have no neighbors inside the stretch; then take the nearest ones.
     let (from, to) = (from.min(at.saturating_sub(1)), to.max(at + 2).min(times.len()));
     let (times, values) = (times.get(from..to)?, values.get(from..to)?);
     let order = match values.len() {
@@ -241,18 +247,18 @@ fn refine(times: &[f64], values: &[f64], at: usize, center: f64, half_width: f64
         _ => 4,
     };
     let scale = times.iter().map(|time| (time - center).abs()).fold(0.0, f64::max);
-    // A burst on the host's clock: no time passes, so there is nothing to fit over.
+    // A burst on the host's clock: no time passes, so that there is nothing to fit over.
     if scale <= 0.0 {
         return None;
     }
     let powers = (0..=order as i32)
         .flat_map(|power| times.iter().map(move |time| ((time - center) / scale).powi(power)));
     let design = DMatrix::from_iterator(values.len(), order + 1, powers);
-    // Without a limit the decomposition of what is not finite never ends.
+    // Without a limit the decomposition would not terminate on entries that are not finite.
     let decomposition = design.clone().try_svd(true, true, 5.0 * f64::EPSILON, MOST_SWEEPS)?;
     let solution = decomposition.solve(&DVector::from_row_slice(values), 1e-12).ok()?;
     let coefficients: Vec<f64> = solution.iter().copied().collect();
-    // Newton's method on the derivative, from the sample; it needs few steps on a smooth top.
+    // Newton's method on the derivative, from the stretch's center; it needs few steps on a smooth top.
     let mut u = 0.0;
     for _ in 0..20 {
         let (_, slope, curvature) = evaluate(&coefficients, u);
@@ -290,15 +296,15 @@ fn refine(times: &[f64], values: &[f64], at: usize, center: f64, half_width: f64
     Some(Turn { time: center + u * scale, value, leverage, lift, scatter, stretch: 0 })
 }
 
-/// Value, first and second derivative of a polynomial with rising powers.
+/// Returns value, first and second derivative of a polynomial with rising powers.
 fn evaluate(coefficients: &[f64], u: f64) -> (f64, f64, f64) {
     coefficients.iter().rev().fold((0.0, 0.0, 0.0), |(value, slope, curvature), coefficient| {
         (value * u + coefficient, slope * u + value, curvature * u + 2.0 * slope)
     })
 }
 
-/// The position that successive turning points swing about: the median over three in a row of the center about which they
-/// decay geometrically (Aitken's delta-squared), a weighted mean near (1, 2, 1)/4.
+/// Returns the position that successive turning points swing about: the median, over three in a row, of the
+/// center about which they decay geometrically (Aitken's delta-squared), a weighted mean near (1, 2, 1)/4.
 fn center(turns: &[Turn]) -> Option<f64> {
     median(
         turns
@@ -313,8 +319,8 @@ fn center(turns: &[Turn]) -> Option<f64> {
     )
 }
 
-/// The turning points from the largest one on, up to where they fall to the floor, by a running median, or the motion
-/// stays on one side of the center for longer than a period.
+/// Returns the turning points from the largest one on, until their running median falls to the floor or the
+/// motion stays on one side of the center for longer than a period.
 fn free_decay(turns: &[Turn], center: f64, floor: f64, period: f64) -> Vec<Turn> {
     let size = |turn: &Turn| (turn.value - center).abs();
     let turns = alternating(turns, center, period);
@@ -322,7 +328,7 @@ fn free_decay(turns: &[Turn], center: f64, floor: f64, period: f64) -> Vec<Turn>
         .iter()
         .enumerate()
         .max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)))
-        // Without turning points none is left out.
+        // Without turning points nothing is skipped.
         .map_or(0, |(index, _)| index);
     let turns: Vec<Turn> = turns.iter().skip(largest).copied().collect();
     let is_above_floor = |at: usize| {
@@ -332,9 +338,9 @@ fn free_decay(turns: &[Turn], center: f64, floor: f64, period: f64) -> Vec<Turn>
     turns.iter().enumerate().take_while(|(at, _)| is_above_floor(*at)).map(|(_, turn)| *turn).collect()
 }
 
-/// One turning point for each swing to a side, the outermost: a wrong reading makes others beside it. Ends where those of
-/// one side follow each other for longer than a period: nothing swings there. Further apart than a period they are
-/// of different swings, with a gap between.
+/// Returns one turning point per half swing, the outermost: a wrong reading creates others beside it. The
+/// decay ends where turning points on one side follow each other for longer than a period, since nothing
+/// swings there. Two of them further apart than a period belong to different swings, with a gap between them.
 fn alternating(turns: &[Turn], center: f64, period: f64) -> Vec<Turn> {
     let mut found: Vec<Turn> = Vec::new();
     let (mut begun, mut latest) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
@@ -387,14 +393,15 @@ mod tests {
         assert_eq!(alternating(&turns(&seen), 0.0, 1.0).len(), 3);
     }
 
-    /// Found by simulated decays: readings of one top that happened to be equal ended the decay there.
+    /// Found by simulated decays: equal readings of one top ended the decay there.
     #[test]
     fn equal_readings_of_one_top_are_one_top() {
         let values = vec![0.0, 2.0, 5.0, 4.9, 5.0, 2.0, 0.0, 1.0, 4.0, 3.0, 0.0];
         assert_eq!(prominent(values, 1.0), [2, 8]);
     }
 
-    /// Found by fuzzing: samples around a turning point that share one stamp were fitted over no time at all.
+    /// Found by fuzzing: samples around a turning point that share one stamp were fitted although no time
+    /// passes.
     #[test]
     fn a_burst_on_one_stamp_has_no_turning_point_and_an_end() {
         let times = [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0];

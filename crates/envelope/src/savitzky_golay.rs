@@ -3,11 +3,11 @@
 use crate::error::EnvelopeError;
 use nalgebra::{DMatrix, DVector};
 
-/// Savitzky–Golay smoothing: each sample becomes the middle value of the polynomial of the given order
-/// fitted to the `window` samples around it. At either end the polynomial of the outermost full window
-/// is used, as scipy's mode `interp` does.
+/// Smooths values by Savitzky and Golay's method: each sample becomes the middle value of the polynomial of
+/// the given order fitted to the `window` samples around it. At either end the polynomial of the outermost
+/// full window is used, as in scipy's mode `interp`.
 ///
-/// A window of 0 or 1 leaves the values alone.
+/// A window of 0 or 1 leaves the values unchanged.
 ///
 /// # Errors
 /// [`EnvelopeError::SmoothingWindow`] unless the window is odd, above the order and at most the number
@@ -23,7 +23,7 @@ pub fn savitzky_golay(values: &[f64], window: usize, order: usize) -> Result<Vec
     if window.is_multiple_of(2) || order >= window || window > values.len() {
         return Err(misfit);
     }
-    // Powers of the position in -1..1: well scaled for any window.
+    // Powers of the position in -1..1 are well scaled for any window.
     let half = (window / 2) as f64;
     let design =
         DMatrix::from_fn(window, order + 1, |row, power| ((row as f64 - half) / half).powi(power as i32));
@@ -36,7 +36,7 @@ pub fn savitzky_golay(values: &[f64], window: usize, order: usize) -> Result<Vec
         .windows(window)
         .map(|part| part.iter().zip(&center).map(|(value, weight)| value * weight).sum::<f64>());
     let end = |part: Option<&[f64]>| -> Vec<f64> {
-        // Both ends are there: a window that is longer than the values was refused.
+        // Both ends exist: a window longer than the values is refused above.
         let fitted = &projection * DVector::from_row_slice(part.unwrap_or_default());
         fitted.iter().copied().collect()
     };

@@ -1,16 +1,18 @@
-//! Stretches of a record without a gap: what lies on either side of a gap is no neighbor.
+//! Stretches of a record without a gap: samples on both sides of a gap are no neighbors.
 
 use crate::envelope::median;
 use std::ops::Range;
 
-/// Usual steps between samples that a gap is longer than: a lost sample or two leave their neighbors near enough.
+/// Longest step between samples that is no gap, in usual steps: after a lost sample or two the neighbors are
+/// near enough.
 const STEPS: f64 = 3.0;
 
-/// Cuts samples at the steps in time longer than `longest` and than three usual steps. Times that repeat, as in a burst,
-/// are no steps. One range of all samples where there is no gap.
+/// Cuts samples at steps in time that are longer than `longest` and longer than three usual steps. Repeated
+/// times, as in a burst, do not count for the usual step. Without a gap the result is one range of all
+/// samples.
 pub(crate) fn stretches(times: &[f64], longest: f64) -> Vec<Range<usize>> {
     let steps = || times.iter().zip(times.iter().skip(1)).map(|(one, next)| next - one);
-    // Where no time passes there is no gap.
+    // Samples at a single time have no gap.
     let usual = median(steps().filter(|step| *step > 0.0).collect()).unwrap_or(f64::INFINITY);
     let limit = longest.max(STEPS * usual * (1.0 + 1e-9));
     let cuts = steps().enumerate().filter(|(_, step)| *step > limit).map(|(at, _)| at + 1);
@@ -22,7 +24,7 @@ pub(crate) fn stretches(times: &[f64], longest: f64) -> Vec<Range<usize>> {
 mod tests {
     use super::stretches;
 
-    /// First sample of each stretch and the one after its last.
+    /// Returns the first index of each stretch and the index after its last.
     fn cut(times: &[f64], longest: f64) -> Vec<(usize, usize)> {
         stretches(times, longest).into_iter().map(|range| (range.start, range.end)).collect()
     }

@@ -1,9 +1,9 @@
-//! Ablations: what a learned part contributes shows when it is taken away.
+//! Ablations: an estimator's learned part is replaced to show what it contributes.
 
 use rand::RngExt;
 use seed::Seed;
 
-/// White noise, uniform between the least and the largest of `values`, one number for each.
+/// Returns white noise, uniform between the least and the largest of `values`, one number for each value.
 pub(crate) fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
     let mut generator = seed.generator();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! What an estimator is given besides the envelope.
+//! Context of a fit: everything an estimator receives besides the envelope.
 
 use crate::ablation::noise_like;
 use crate::error::FitError;
@@ -8,28 +8,28 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// One step of a training, for the trace and the progress bar.
+/// One step of a training run, for the trace and the progress bar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// Steps taken so far; 0 is the untrained state.
     pub step: u64,
-    /// Most steps that this fit will take.
+    /// Largest number of steps that this fit will take.
     pub planned: u64,
     /// Phase of the training, such as `physics weight 100`.
     pub phase: String,
-    /// The loss that is minimized in this phase, in the method's own units.
+    /// Loss that is minimized in this phase, in the method's own units.
     pub loss: f64,
     /// λ at this step, in 1/s.
     pub decay_rate: f64,
 }
 
-/// Whoever watches a training.
+/// Observer of a training run.
 pub trait Observer {
-    /// Called with the untrained state and after every step.
+    /// Receives the untrained state and the state after every step.
     fn observe(&self, step: &Step);
 }
 
-/// Watches nothing.
+/// Observer that ignores every step.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 
@@ -37,7 +37,7 @@ impl Observer for Silent {
     fn observe(&self, _step: &Step) {}
 }
 
-/// A request to stop, shared between threads. Set once, never cleared.
+/// Request to stop, shared between threads. Once set, it is never cleared.
 #[derive(Debug, Default)]
 pub struct Cancel {
     asked: AtomicBool,
@@ -45,51 +45,51 @@ pub struct Cancel {
 }
 
 impl Cancel {
-    /// Nobody asked yet.
+    /// Creates a request that has not been made yet.
     #[must_use]
     pub const fn new() -> Self {
         Self { asked: AtomicBool::new(false), above: None }
     }
 
-    /// One that is requested by itself, or with the one above it.
+    /// Creates a request that counts as made if it was made itself or if `above` was.
     #[must_use]
     pub const fn below(above: &'static Self) -> Self {
         Self { asked: AtomicBool::new(false), above: Some(above) }
     }
 
-    /// Asks every fit that watches this to stop after its current step.
+    /// Asks every fit that watches this request to stop after its current step.
     pub fn request(&self) {
         self.asked.store(true, Ordering::Relaxed);
     }
 
-    /// Returns whether somebody asked.
+    /// Returns `true` if the request was made.
     #[must_use]
     pub fn is_requested(&self) -> bool {
         self.asked.load(Ordering::Relaxed) || self.above.is_some_and(Self::is_requested)
     }
 }
 
-/// Where a fit keeps its state, so that it can go on where it was after a crash or a request to stop.
+/// Storage for the state of a fit, so that the fit can continue after a crash or a request to stop.
 pub trait Checkpoints {
-    /// The state kept last, where there is one.
+    /// Returns the state stored last; `None` if there is none.
     fn latest(&self) -> Option<Vec<u8>>;
 
-    /// Returns whether it is time to keep the state again.
+    /// Returns `true` if it is time to store the state again.
     fn is_due(&self) -> bool;
 
-    /// Keeps a state, that before `step` is observed, in place of the one before.
+    /// Stores the state from before `step` is observed, in place of the previous one.
     ///
     /// # Errors
-    /// A sentence that says why it could not be kept; the one before is then still there.
+    /// A sentence that says why the state could not be stored; the previous one is then still there.
     fn keep(&self, step: u64, state: &[u8]) -> Result<(), String>;
 }
 
-/// Context of a fit beside the envelope: seeds by name, a budget, whoever watches, the
-/// request to stop, and a place for its state.
+/// Context of a fit besides the envelope: named seeds, a step budget, an observer, the request to stop, and
+/// storage for the fit's state.
 ///
-/// An estimator that takes more than a second keeps its state: it begins from [`resumed`](Self::resumed) where that has
-/// something, and calls [`checkpoint`](Self::checkpoint) before every step. It then gives to the bit what it would
-/// have given in one go. Others call neither, and begin anew.
+/// An estimator that takes more than a second stores its state: it starts from [`resumed`](Self::resumed) if
+/// a state was stored, and calls [`checkpoint`](Self::checkpoint) before every step. The resumed fit then
+/// gives the same bits as an uninterrupted one. Other estimators call neither and start again.
 pub struct FitContext<'a> {
     seed: Seed,
     max_steps: Option<u64>,
@@ -101,49 +101,49 @@ pub struct FitContext<'a> {
 }
 
 impl<'a> FitContext<'a> {
-    /// A context that draws from a seed, reports to an observer and watches a request to stop.
+    /// Creates a context that draws from a seed, reports to an observer and watches a request to stop.
     ///
-    /// `max_steps` caps the training steps; `None` leaves them to the estimator's own settings, 0 asks
+    /// `max_steps` caps the training steps: `None` leaves them to the estimator's own settings, and 0 asks
     /// for the untrained estimate.
     #[must_use]
     pub fn new(seed: Seed, max_steps: Option<u64>, observer: &'a dyn Observer, cancel: &'a Cancel) -> Self {
         Self { seed, max_steps, observer, cancel, query_times: &[], checkpoints: None, ablation: None }
     }
 
-    /// Asks for the fitted function at `times` as well: seconds after the envelope's
-    /// first peak, finite, in any order, within the envelope or beyond it.
+    /// Asks for the fitted function at `times` as well: seconds after the envelope's first peak, finite, in
+    /// any order, within the envelope or beyond it.
     #[must_use]
     pub fn predicting_at(self, times: &'a [f64]) -> Self {
         Self { query_times: times, ..self }
     }
 
-    /// Sets the place where the fit's state is kept.
+    /// Sets the storage for the fit's state.
     #[must_use]
     pub fn checkpointing_to(self, checkpoints: &'a dyn Checkpoints) -> Self {
         Self { checkpoints: Some(checkpoints), ..self }
     }
 
-    /// The same context with a part of the estimator taken away; only an estimator with [`Tag::Ablation`](crate::Tag)
-    /// obeys.
+    /// Returns this context with an ablation: a part of the estimator is replaced. Only an estimator with
+    /// [`Tag::Ablation`](crate::Tag) follows it.
     #[must_use]
     pub fn ablating(self, ablation: Ablation) -> Self {
         Self { ablation: Some(ablation), ..self }
     }
 
-    /// The part of the estimator that this fit does without.
+    /// Returns the ablation of this fit; `None` for a full fit.
     #[must_use]
     pub fn ablation(&self) -> Option<Ablation> {
         self.ablation
     }
 
-    /// Whether the learned part is held at zero.
+    /// Returns `true` if the learned part is held at zero.
     #[must_use]
     pub fn is_at_zero(&self) -> bool {
         self.ablation == Some(Ablation::LearnedPartAtZero)
     }
 
-    /// What a learned part reads: `values` themselves, or white noise of the same range where the ablation asks for it.
-    /// `name` is that of the input, and of the noise's seed.
+    /// Returns the input of a learned part: `values` themselves, or white noise of the same range if the
+    /// ablation asks for it. `name` identifies the input and seeds its noise.
     #[must_use]
     pub fn input(&self, name: &str, values: Vec<f64>) -> Vec<f64> {
         match self.ablation {
@@ -152,10 +152,10 @@ impl<'a> FitContext<'a> {
         }
     }
 
-    /// The state to begin from, where one was kept.
+    /// Returns the state to start from; `None` if none was stored.
     ///
     /// # Errors
-    /// [`FitError::Checkpoint`] where it is none of this kind.
+    /// [`FitError::Checkpoint`] if the stored bytes are not a state of this type.
     pub fn resumed<T: DeserializeOwned>(&self) -> Result<Option<T>, FitError> {
         let Some(bytes) = self.checkpoints.and_then(Checkpoints::latest) else { return Ok(None) };
         let refused =
@@ -167,11 +167,11 @@ impl<'a> FitContext<'a> {
         }
     }
 
-    /// Keeps a state where it is time to, or where the fit is about to stop on request; called before `step` is
+    /// Stores a state if it is time to, or if the fit is about to stop on request. Call it before `step` is
     /// observed.
     ///
     /// # Errors
-    /// [`FitError::Checkpoint`] where it cannot be kept.
+    /// [`FitError::Checkpoint`] if the state cannot be stored.
     pub fn checkpoint<T: Serialize>(&self, step: u64, state: impl FnOnce() -> T) -> Result<(), FitError> {
         let Some(checkpoints) = self.checkpoints.filter(|place| place.is_due() || self.is_canceled()) else {
             return Ok(());
@@ -181,31 +181,31 @@ impl<'a> FitContext<'a> {
         checkpoints.keep(step, &bytes).map_err(refused)
     }
 
-    /// Times at which [`Estimate::predictions`](crate::Estimate::predictions) are asked for, in seconds
-    /// after the envelope's first peak.
+    /// Returns the times for which [`Estimate::predictions`](crate::Estimate::predictions) are asked, in
+    /// seconds after the envelope's first peak.
     #[must_use]
     pub fn query_times(&self) -> &'a [f64] {
         self.query_times
     }
 
-    /// The seed of a named part of the estimator, such as `initial weights`.
+    /// Returns the seed of a named part of the estimator, such as `initial weights`.
     #[must_use]
     pub fn seed(&self, name: &str) -> Seed {
         self.seed.child(name)
     }
 
-    /// The estimator's own step limit under this context's cap.
+    /// Returns the estimator's own step limit, lowered to this context's cap.
     #[must_use]
     pub fn step_limit(&self, own: u64) -> u64 {
         self.max_steps.map_or(own, |cap| cap.min(own))
     }
 
-    /// Tells the observer of a step.
+    /// Reports a step to the observer.
     pub fn observe(&self, step: &Step) {
         self.observer.observe(step);
     }
 
-    /// Returns whether the fit should stop after its current step.
+    /// Returns `true` if the fit should stop after its current step.
     #[must_use]
     pub fn is_canceled(&self) -> bool {
         self.cancel.is_requested()
@@ -219,7 +219,7 @@ mod tests {
     use seed::Seed;
     use std::cell::RefCell;
 
-    /// Keeps at every other step.
+    /// Storage that is due at every other step.
     #[derive(Default)]
     struct Place(RefCell<Vec<(u64, Vec<u8>)>>, RefCell<u64>);
 
@@ -254,7 +254,7 @@ mod tests {
         let kept = context.resumed::<State>().unwrap().unwrap();
         let bits = |state: &State| state.1.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert_eq!((kept.0, bits(&kept), kept.2), (state.0, bits(&state), state.2));
-        // Asked to stop it keeps at once.
+        // A request to stop makes every checkpoint due.
         cancel.request();
         context.checkpoint(4, || state.clone()).unwrap();
         context.checkpoint(5, || state.clone()).unwrap();
@@ -268,10 +268,10 @@ mod tests {
         let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(&place);
         let refused = context.checkpoint(9, || 1.0_f64).unwrap_err();
         assert_eq!(refused.to_string(), "the state of the fit: the disk is full");
-        // Eight bytes are no three numbers, and more than four.
+        // Eight bytes cannot hold the three values of a `State`, and they are more than four.
         assert!(matches!(context.resumed::<State>(), Err(FitError::Checkpoint { .. })));
         assert!(context.resumed::<[u8; 4]>().unwrap_err().to_string().contains("4 bytes too many"));
-        // Without a place nothing is kept.
+        // Without storage nothing is stored.
         let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
         context.checkpoint(9, || 1.0_f64).unwrap();
         assert_eq!(context.resumed::<f64>().unwrap(), None);

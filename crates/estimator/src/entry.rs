@@ -1,4 +1,4 @@
-//! What a registry knows of an estimator.
+//! Registry entry of an estimator, its tags, and the trait that estimators implement.
 
 use crate::context::FitContext;
 use crate::error::FitError;
@@ -7,82 +7,82 @@ use envelope::Envelope;
 use results::Estimand;
 use settings::{Field, Resolved, SettingsError};
 
-/// Property of an estimator, read by the test battery and the tables, so that nobody has
-/// to ask for an estimator by name.
+/// Property of an estimator. The test battery and the tables read it, so that no code has to ask for an
+/// estimator by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tag {
-    /// Trains by steps: with a budget of zero steps it has to be wrong.
+    /// Trains step by step: with a budget of zero steps its estimate has to be wrong.
     Iterative,
-    /// Draws random numbers: another seed takes another way.
+    /// Draws random numbers: another seed gives another computation.
     Seeded,
     /// States an uncertainty.
     Interval,
-    /// Learns its skill from envelopes of its own making, before it sees the one it is asked about: its
-    /// answer is as good as its training, not least squares to the last digits.
+    /// Is trained on simulated envelopes before it sees the measured one: its answer is as good as its
+    /// training, and does not equal least squares to the last digits.
     Amortized,
-    /// Estimates something else than the slope of the least-squares line, as a robust or a friction-aware
-    /// method does: where its value differs from least squares it may be right.
+    /// Estimates another quantity than the slope of the least-squares line, as a robust or a friction-aware
+    /// method does: its value may be right where it differs from least squares.
     OwnEstimand,
-    /// Has a learned part that can be held at zero, and an input that can be replaced by noise: it obeys
+    /// Has a learned part that can be held at zero and an input that can be replaced by noise: it follows
     /// [`FitContext::ablation`].
     Ablation,
-    /// The floor row of tables: not meant to be right.
+    /// Gives the floor row of tables: it is not meant to be right.
     Null,
 }
 
-/// An estimator with its settings in force.
+/// Estimator with its settings.
 ///
-/// `fit` takes `&self`: nothing learned lives in the estimator, so one can fit any number of
-/// envelopes, from any number of threads.
+/// `fit` takes `&self`: the estimator holds nothing learned, so that one estimator can fit any number of
+/// envelopes from any number of threads.
 pub trait Estimator: Send + Sync {
     /// Fits an envelope.
     ///
     /// # Errors
-    /// [`FitError`] where there is no estimate to give. A fit that ran out of budget, was interrupted or
-    /// diverged is no error: it gives the best estimate it has, and says so.
+    /// [`FitError`] if there is no estimate to give. A fit that ran out of budget, was interrupted or
+    /// diverged is not an error: it gives the best estimate it has, and says so.
     fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError>;
 
-    /// Does the part of the work that no envelope enters: an amortized estimator trains here, and what
-    /// comes back only reads. Its fits equal this one's to the bit, given a context of the same seed and
-    /// cap on the steps. `None` where there is no such part, as by default.
+    /// Does the part of the work that needs no envelope: an amortized estimator trains here, and the returned
+    /// estimator only evaluates the trained model. Its fits equal this one's to the bit, given a context of
+    /// the same seed and cap on the steps. `None` if the estimator has no such part, which is the default.
     ///
     /// # Errors
-    /// As [`Estimator::fit`].
+    /// The errors of [`Estimator::fit`].
     fn pretrain(&self, context: &FitContext<'_>) -> Result<Option<Box<dyn Estimator>>, FitError> {
         let _ = context;
         Ok(None)
     }
 }
 
-/// A line of the registry: everything that is known of an estimator without building it.
+/// One row of the registry: everything that is known about an estimator without building it.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
     /// Identifier in configurations and results, such as `pinn`.
     pub id: &'static str,
-    /// Number in the paper's tables, where it is one of the paper's.
+    /// Number in the paper's tables; `None` if the paper does not have it.
     pub paper_number: Option<u8>,
-    /// Name in words.
+    /// Human-readable name.
     pub title: &'static str,
-    /// Method, in a sentence.
+    /// The method, in one sentence.
     pub summary: &'static str,
     /// Properties of the estimator.
     pub tags: &'static [Tag],
-    /// The literature it follows.
+    /// Literature that the method follows.
     pub citations: &'static [&'static str],
-    /// Its configuration keys, within the section `estimator`.
+    /// Configuration keys within the section `estimator`.
     pub fields: &'static [Field],
-    /// Builds it from checked settings.
+    /// Builds the estimator from checked settings.
     pub build: fn(&Resolved) -> Result<Box<dyn Estimator>, SettingsError>,
 }
 
 impl Entry {
-    /// Returns whether the estimator carries a tag.
+    /// Returns `true` if the estimator carries a tag.
     #[must_use]
     pub fn has(&self, tag: Tag) -> bool {
         self.tags.contains(&tag)
     }
 
-    /// Relation of its converged value to least squares, by its tags.
+    /// Returns the relation of the estimator's converged value to least squares, derived from its tags.
     #[must_use]
     pub fn estimand(&self) -> Estimand {
         if self.has(Tag::Null) {

@@ -1,4 +1,4 @@
-//! What an estimator gives.
+//! Estimate of an estimator, with its uncertainty, its predictions and its trained model.
 
 use results::Reached;
 use serde::{Deserialize, Serialize};
@@ -9,11 +9,11 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 pub struct Stop {
     /// State in which it ended.
     pub reached: Reached,
-    /// A sentence with numbers; where the fit did not converge, with what to do.
+    /// A sentence with numbers; it also says what to do if the fit did not converge.
     pub because: String,
 }
 
-/// Uncertainty of a decay rate, as the method itself states it.
+/// Uncertainty of a decay rate, as stated by the method itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Standard error of λ, in 1/s.
@@ -23,10 +23,10 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// A symmetric interval by Student's t.
+    /// Returns the symmetric interval of Student's t distribution.
     ///
-    /// `decay_rate` and `std_error` in 1/s; `degrees_of_freedom` above 0. `None` where a number is not
-    /// finite or not positive.
+    /// `decay_rate` and `std_error` are in 1/s; `degrees_of_freedom` is above 0. `None` if a number is not
+    /// finite, `std_error` is negative or `degrees_of_freedom` is not positive.
     #[must_use]
     pub fn students_t(decay_rate: f64, std_error: f64, degrees_of_freedom: f64) -> Option<Self> {
         let usable = decay_rate.is_finite() && std_error.is_finite() && std_error >= 0.0;
@@ -37,25 +37,26 @@ impl Uncertainty {
     }
 }
 
-/// Prediction of a fitted estimator for a peak that it may not have seen. Only [`Prediction::new`] makes one.
+/// Prediction of ln A at one time, for a peak that the fit may not have seen. Only [`Prediction::new`] makes
+/// one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Prediction {
-    /// ln A at the time asked about, the amplitude in the record's unit: the fitted function's own value.
+    /// ln A at the query time, with the amplitude in the record's unit: the value of the fitted function.
     ///
-    /// Beyond the peaks not every function has a finite one: −∞ where the motion has come to rest by
-    /// then (dry friction ends it), +∞ where it has grown beyond all bounds, NaN where the function is
-    /// not defined (the logarithm of an expression that has turned negative) or where the method
-    /// cannot follow it so far. Ask [`is_finite`](f64::is_finite) before computing with it.
+    /// Beyond the peaks not every function has a finite value: −∞ if the motion has come to rest by then (dry
+    /// friction ends it), +∞ if it has grown without bound, NaN if the function is not defined there (the
+    /// logarithm of an expression that has turned negative) or if the method cannot follow it that far. Check
+    /// [`is_finite`](f64::is_finite) before computing with it.
     pub log_amplitude: f64,
-    /// Standard deviation of a **measured** ln A about it, scatter and the fit's own uncertainty
-    /// together, where the method states one: finite, at least 0. `None` where `log_amplitude` is not
-    /// finite.
+    /// Standard deviation of a **measured** ln A about the prediction, from scatter and the fit's own
+    /// uncertainty together: finite and at least 0. `None` if the method states none or `log_amplitude` is
+    /// not finite.
     pub std_error: Option<f64>,
 }
 
 impl Prediction {
-    /// A prediction with what can be said of its error: a standard deviation that is not finite is none.
+    /// Creates a prediction. The standard deviation is dropped if it or `log_amplitude` is not finite.
     #[must_use]
     pub fn new(log_amplitude: f64, std_error: Option<f64>) -> Self {
         let usable = |std_error: &f64| log_amplitude.is_finite() && std_error.is_finite();
@@ -68,40 +69,40 @@ impl Prediction {
 pub struct ModelFile {
     /// Name of the file, such as `weights.safetensors`.
     pub name: String,
-    /// Its content.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }
 
-/// Estimate of an estimator.
+/// Result of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Decay rate λ, in 1/s: finite, of either sign (an envelope may grow).
     pub decay_rate: f64,
-    /// ln A at the first peak, the amplitude in the record's unit: finite.
+    /// ln A at the first peak, with the amplitude in the record's unit: finite.
     pub log_amplitude: f64,
-    /// Uncertainty of λ, where the method states it.
+    /// Uncertainty of λ; `None` if the method states none.
     pub uncertainty: Option<Uncertainty>,
     /// State in which the fit ended, and the reason.
     pub stop: Stop,
-    /// Training steps taken.
+    /// Number of training steps taken.
     pub steps: u64,
     /// Number of trained parameters.
     pub parameters: usize,
-    /// The fitted function ln A at the envelope's times.
+    /// Values of the fitted function ln A at the envelope's times.
     pub fitted_log_amplitudes: Vec<f64>,
-    /// The fitted function at [`FitContext::query_times`](crate::FitContext::query_times), one for each
-    /// time asked about, in their order.
+    /// Values of the fitted function at [`FitContext::query_times`](crate::FitContext::query_times), one per
+    /// time, in their order.
     pub predictions: Vec<Prediction>,
-    /// The law that the method discovered, in the record's units, where it discovers laws.
+    /// Law that the method discovered, in the record's units; `None` if the method discovers no laws.
     pub equation: Option<String>,
-    /// The trained model, where there is something to keep.
+    /// Trained model; `None` if there is nothing to save.
     pub model: Option<ModelFile>,
 }
 
 impl Estimate {
-    /// The earliest of the times asked about that has no finite prediction; `None` where all have one.
+    /// Returns the earliest query time without a finite prediction; `None` if all have one.
     ///
-    /// `query_times` are those that the fit was asked for.
+    /// `query_times` are those of the fit.
     #[must_use]
     pub fn first_without_prediction(&self, query_times: &[f64]) -> Option<f64> {
         let finite = self.predictions.iter().map(|prediction| prediction.log_amplitude.is_finite());

@@ -1,11 +1,11 @@
-//! The contract every estimator of a decay rate fulfills.
+//! Contract that every estimator of a decay rate fulfills.
 //!
-//! An estimator is handed an [`Envelope`](envelope::Envelope) and a [`FitContext`] and gives an
-//! [`Estimate`] or a [`FitError`]. It draws random numbers only from the context's named seeds, knows
-//! no clock, no disk and no other estimator, and cannot reach the oracle or the truth: its crate does
-//! not depend on them, which a test checks.
+//! An estimator receives an [`Envelope`](envelope::Envelope) and a [`FitContext`] and returns an [`Estimate`]
+//! or a [`FitError`]. It draws random numbers from the context's named seeds only, uses no clock, no disk and
+//! no other estimator, and cannot reach the oracle or the truth: its crate does not depend on them, which a
+//! test checks.
 //!
-//! A new estimator is one crate with one [`Entry`]; `crates/estimators/baseline` is the one to copy.
+//! A new estimator is one crate with one [`Entry`]; copy `crates/estimators/baseline` as a start.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -1,14 +1,14 @@
-//! The scaled coordinates that estimators work in.
+//! Scaled coordinates that estimators work in.
 
 use crate::error::FitError;
 use envelope::Envelope;
 
-/// Time by the envelope's length, ln A by its mean and spread. No line is fitted here: what is learned
-/// from the data is a range, a mean and a standard deviation.
+/// Scaling of time by the envelope's length, and of ln A by its mean and spread. No line is fitted here: the
+/// scaling takes a range, a mean and a standard deviation from the data.
 ///
-/// Two scaled times are in use: τ = t/duration in 0..1 ([`Scaling::unit_time`]) and
-/// s = 2·t/duration − 1 in −1..1 ([`Scaling::centered_time`]). The scaled logarithm is
-/// z = (ln A − mean)/spread, of mean 0 and standard deviation 1 over the peaks.
+/// Two scaled times are in use: τ = t/duration in 0..1 ([`Scaling::unit_time`]) and s = 2·t/duration − 1 in
+/// −1..1 ([`Scaling::centered_time`]). The scaled logarithm is z = (ln A − mean)/spread, with mean 0 and
+/// standard deviation 1 over the peaks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scaling {
     duration: f64,
@@ -17,11 +17,11 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// The scaling of an envelope.
+    /// Returns the scaling of an envelope.
     ///
     /// # Errors
-    /// [`FitError::NoSpread`] where the logarithms differ by their rounding only, or where they lie so
-    /// close in time that no rate can be written as a double.
+    /// [`FitError::NoSpread`] if the logarithms differ only by rounding, or if the peaks lie so close in time
+    /// that a rate overflows a double.
     pub fn of(envelope: &Envelope) -> Result<Self, FitError> {
         let duration = envelope.duration_s();
         let logs = envelope.log_amplitudes();
@@ -33,79 +33,79 @@ impl Scaling {
         if usable { Ok(Self { duration, mean, spread }) } else { Err(FitError::NoSpread { spread }) }
     }
 
-    /// Time from the first peak to the last, in seconds.
+    /// Returns the time from the first peak to the last, in seconds.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// Mean of ln A.
+    /// Returns the mean of ln A over the peaks.
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// Standard deviation of ln A over the peaks, divided by their number.
+    /// Returns the standard deviation of ln A over the peaks, with their number as divisor.
     #[must_use]
     pub fn spread(&self) -> f64 {
         self.spread
     }
 
-    /// τ of a time in seconds: 0 at the first peak, 1 at the last.
+    /// Returns τ of a time in seconds: 0 at the first peak, 1 at the last.
     #[must_use]
     pub fn unit_time(&self, time_s: f64) -> f64 {
         time_s / self.duration
     }
 
-    /// s of a time in seconds: −1 at the first peak, 1 at the last.
+    /// Returns s of a time in seconds: −1 at the first peak, 1 at the last.
     #[must_use]
     pub fn centered_time(&self, time_s: f64) -> f64 {
         2.0 * self.unit_time(time_s) - 1.0
     }
 
-    /// z of a logarithm.
+    /// Returns z of ln A.
     #[must_use]
     pub fn scaled_log(&self, log_amplitude: f64) -> f64 {
         (log_amplitude - self.mean) / self.spread
     }
 
-    /// τ of every peak.
+    /// Returns τ of every peak.
     #[must_use]
     pub fn unit_times(&self, envelope: &Envelope) -> Vec<f64> {
         envelope.times_s().iter().map(|&time| self.unit_time(time)).collect()
     }
 
-    /// s of every peak.
+    /// Returns s of every peak.
     #[must_use]
     pub fn centered_times(&self, envelope: &Envelope) -> Vec<f64> {
         envelope.times_s().iter().map(|&time| self.centered_time(time)).collect()
     }
 
-    /// z of every peak.
+    /// Returns z of every peak.
     #[must_use]
     pub fn scaled_logs(&self, envelope: &Envelope) -> Vec<f64> {
         envelope.log_amplitudes().iter().map(|&log| self.scaled_log(log)).collect()
     }
 
-    /// ln A of a scaled logarithm.
+    /// Returns ln A of a scaled logarithm z.
     #[must_use]
     pub fn log_amplitude(&self, scaled: f64) -> f64 {
         self.mean + self.spread * scaled
     }
 
-    /// A difference or a standard deviation of ln A from one in scaled units.
+    /// Converts a difference or a standard deviation of z to one of ln A.
     #[must_use]
     pub fn deviation(&self, scaled: f64) -> f64 {
         scaled * self.spread
     }
 
-    /// A rate in 1/s from one per unit of τ.
+    /// Converts a rate per unit of τ to 1/s.
     #[must_use]
     pub fn rate_per_unit_time(&self, scaled: f64) -> f64 {
         scaled * (self.spread / self.duration)
     }
 
-    /// A rate in 1/s from one per unit of s, which runs twice as far as τ.
+    /// Converts a rate per unit of s to 1/s; s covers twice the range of τ.
     #[must_use]
     pub fn rate_per_centered_time(&self, scaled: f64) -> f64 {
         scaled * (2.0 * self.spread / self.duration)
@@ -133,7 +133,7 @@ mod tests {
                 .zip(envelope.log_amplitudes())
                 .all(|(&z, log)| { (scaling.log_amplitude(z) - log).abs() < 1e-15 })
         );
-        // ln A = −t/2 has the same rate however time is scaled.
+        // ln A = −t/2 has the same rate in both scaled times.
         let slope = scaling.scaled_log(-2.0) - scaling.scaled_log(0.0);
         assert!((scaling.rate_per_unit_time(slope) + 0.5).abs() < 1e-15);
         assert!((scaling.rate_per_centered_time(slope / 2.0) + 0.5).abs() < 1e-15);

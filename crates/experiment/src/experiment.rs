@@ -1,4 +1,4 @@
-//! From a document to an experiment.
+//! Resolution of a configuration document into an experiment.
 
 use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
 use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
@@ -12,27 +12,27 @@ use settings::{Document, Field, Resolved, Section, SettingsError};
 use std::sync::Arc;
 use toml::Value;
 
-/// An experiment with every key checked.
+/// Experiment whose keys have all been checked.
 pub struct Experiment {
-    /// Start of the run folder's name.
+    /// Prefix of the run folder's name.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of every random draw.
     pub seed: u64,
-    /// The record.
+    /// Record file, and options for reading it.
     pub data: DataSettings,
-    /// The way to its envelope.
+    /// Pipeline that turns the record into an envelope.
     pub envelope: EnvelopeSettings,
-    /// The fits.
+    /// Number of fits, their budget, and the tolerance.
     pub fit: FitSettings,
-    /// How often what was computed is kept.
+    /// Interval between checkpoints.
     pub checkpoint: CheckpointSettings,
-    /// What to do.
+    /// Task to run.
     pub task: Task,
-    /// Every value in force.
+    /// All configuration values in force, defaults included.
     pub resolved: Resolved,
 }
 
-/// What to do with the record.
+/// Task to run on the record.
 pub enum Task {
     /// Fit one estimator.
     Estimate(Single),
@@ -40,42 +40,42 @@ pub enum Task {
     Compare(Comparison),
 }
 
-/// One method.
+/// The method of a single estimate.
 pub enum Single {
-    /// An estimator of the registry.
+    /// Estimator from the registry.
     Learned {
-        /// Its line there.
+        /// Registry entry of the estimator.
         entry: Entry,
         /// The estimator, built from its settings.
         estimator: Arc<dyn Estimator>,
     },
-    /// A classical method, by its name. It has no settings.
+    /// Classical method, by name. It has no settings.
     Classical(String),
 }
 
-/// The section `compare`.
+/// Section `compare`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Comparison {
-    /// Names of the methods, each known; `None` for all of the paper's.
+    /// Names of the methods, all known; `None` for all methods of the paper.
     pub methods: Option<Vec<String>>,
-    /// Moment of inertia, in kg·m², where it is known.
+    /// Moment of inertia, in kg·m²; `None` if unknown.
     pub inertia_kg_m2: Option<f64>,
-    /// Whose statements the numbers are held against.
+    /// Source of the statements that the results are checked against.
     pub claims: Claims,
 }
 
-/// Whose statements a comparison's numbers are held against.
+/// Source of the statements that a comparison's numbers are checked against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Claims {
-    /// Nobody's.
+    /// No source: nothing is checked.
     None,
-    /// The paper's.
+    /// The paper.
     Paper,
 }
 
-/// The keys at the top.
+/// Keys at the top of the document.
 #[derive(Deserialize)]
 pub(crate) struct Top {
     pub(crate) task: String,
@@ -83,17 +83,17 @@ pub(crate) struct Top {
     pub(crate) seed: u64,
 }
 
-/// The section `data`.
+/// Section `data`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataSettings {
-    /// The record file.
+    /// Path of the record file.
     pub path: String,
-    /// Where the record can be had, where the configuration says so.
+    /// Place to obtain the record from; `None` if the configuration does not state it.
     pub source: Option<String>,
     format: Format,
     quantity: Option<Quantity>,
-    /// Which clock to believe.
+    /// Choice of the clock to trust.
     pub clock: ClockChoice,
     time: Option<String>,
     value: Option<String>,
@@ -112,7 +112,7 @@ pub struct DataSettings {
 }
 
 impl DataSettings {
-    /// How to read the file.
+    /// Returns the options for reading the record file.
     #[must_use]
     pub fn read_options(&self) -> ReadOptions {
         ReadOptions {
@@ -133,14 +133,14 @@ impl DataSettings {
         }
     }
 
-    /// What the configuration states of the record.
+    /// Returns what the configuration states about the record: origin, sample rate and number of samples.
     #[must_use]
     pub fn statements(&self) -> Statements {
         Statements { origin: self.origin, sample_rate_hz: self.stated_rate_hz, samples: self.stated_samples }
     }
 }
 
-/// Which pipeline.
+/// Envelope pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pipeline {
@@ -151,7 +151,7 @@ pub enum Pipeline {
 }
 
 impl Pipeline {
-    /// The name as configurations and results write it.
+    /// Returns the name used in configurations and results.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -161,22 +161,22 @@ impl Pipeline {
     }
 }
 
-/// The sections `envelope` and below.
+/// Section `envelope` and its subsections.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopeSettings {
-    /// The pipeline in force.
+    /// Pipeline in force.
     pub pipeline: Pipeline,
-    /// Settings of the paper's.
+    /// Settings of the paper's pipeline.
     pub paper: PaperPipeline,
-    /// Settings of the recommended one.
+    /// Settings of the recommended pipeline.
     pub recommended: RecommendedPipeline,
 }
 
 impl EnvelopeSettings {
-    /// Sends a record through a pipeline.
+    /// Runs a pipeline on a record.
     ///
     /// # Errors
-    /// As the pipeline.
+    /// The pipeline's error.
     pub fn extract(
         &self,
         pipeline: Pipeline,
@@ -190,25 +190,25 @@ impl EnvelopeSettings {
     }
 }
 
-/// The section `fit`.
+/// Section `fit`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitSettings {
-    /// How many seeds to fit.
+    /// Number of seeds to fit.
     pub seeds: u64,
-    /// Cap on the training steps.
+    /// Upper limit on the training steps; `None` for the estimator's own limit.
     pub max_steps: Option<u64>,
-    /// Largest error against the oracle that passes, in percent.
+    /// Largest passing error relative to the oracle, in percent.
     pub tolerance_percent: f64,
 }
 
-/// The section `checkpoint`.
+/// Section `checkpoint`.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckpointSettings {
     /// Seconds between two checkpoints.
     pub interval_s: f64,
-    /// Steps between two checkpoints, in place of the time.
+    /// Steps between two checkpoints; replaces the time interval if given.
     pub interval_steps: Option<u64>,
 }
 
@@ -217,8 +217,8 @@ struct PipelineName {
     pipeline: Pipeline,
 }
 
-/// Checks a document, overrides applied, against the schema and what there is to choose from: the
-/// registry of estimators, and the names of the classical methods.
+/// Checks a document, with overrides applied, against the schema, the registry of estimators and the names of
+/// the classical methods.
 ///
 /// # Errors
 /// [`SettingsError`], with file, line and column or the override that caused it.
@@ -228,7 +228,7 @@ pub fn resolve(
     classical: &[&str],
 ) -> Result<Experiment, SettingsError> {
     let compares = document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("compare"));
-    // A method's keys can only be checked once it is known which method it is.
+    // The method has to be known before its keys can be checked.
     let method = if compares { None } else { Some(find_method(document, registry, classical)?) };
     let own_fields = match &method {
         Some(Named::Learned(entry)) => entry.fields,
@@ -266,7 +266,7 @@ pub fn resolve(
     })
 }
 
-/// The settings of both pipelines, one of them in force.
+/// Reads the settings of both pipelines; `pipeline` is the one in force.
 pub(crate) fn pipelines(resolved: &Resolved, pipeline: Pipeline) -> Result<EnvelopeSettings, SettingsError> {
     Ok(EnvelopeSettings {
         pipeline,
@@ -292,14 +292,16 @@ fn comparison(
     }
 }
 
-/// A method that a configuration names.
+/// Method named by a configuration.
 enum Named {
     Learned(Entry),
     Classical(String),
 }
 
-/// Where the command line sets `estimator.name` alone, the file's keys for its own estimator are left over:
-/// an unknown key among these is told with the choice that leaves them out.
+/// Turns an unknown key of another estimator into an error that names the remedy.
+///
+/// If the command line overrides `estimator.name` alone, the file's keys for its own estimator remain and are
+/// unknown to the chosen one; `estimator=NAME` drops them.
 fn of_another(error: SettingsError, document: &Document) -> SettingsError {
     let name =
         document.get("estimator.name").filter(|name| matches!(name.origin, settings::Origin::Override(_)));
@@ -318,7 +320,7 @@ fn of_another(error: SettingsError, document: &Document) -> SettingsError {
     }
 }
 
-/// The method that `estimator.name` names.
+/// Finds the method named by `estimator.name`.
 fn find_method(document: &Document, registry: &[Entry], classical: &[&str]) -> Result<Named, SettingsError> {
     let ids = || {
         let learned = registry.iter().map(|entry| entry.id);

@@ -1,4 +1,4 @@
-//! What a configuration of an experiment may hold, as JSON Schema.
+//! JSON Schemas of experiment configurations.
 
 use crate::prediction::{KINDS, PREDICT_SECTIONS, fields_of};
 use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
@@ -6,7 +6,7 @@ use estimator::Entry;
 use serde_json::{Map, Value, json};
 use settings::{Default, Field, json_schema};
 
-/// JSON Schema of `task = "estimate"`, with the keys of each estimator under its name.
+/// Returns the JSON Schema of `task = "estimate"`, with the keys of each estimator under its name.
 #[must_use]
 pub fn estimate_schema(registry: &[Entry], classical: &[&str]) -> Value {
     let ids: Vec<&str> = registry.iter().map(|entry| entry.id).chain(classical.iter().copied()).collect();
@@ -39,7 +39,7 @@ pub fn estimate_schema(registry: &[Entry], classical: &[&str]) -> Value {
     json_schema::with_base(root, required)
 }
 
-/// JSON Schema of `task = "compare"`.
+/// Returns the JSON Schema of `task = "compare"`.
 #[must_use]
 pub fn compare_schema(registry: &[Entry], classical: &[&str]) -> Value {
     let sections: Vec<_> = SECTIONS.iter().copied().chain([COMPARE]).collect();
@@ -49,7 +49,7 @@ pub fn compare_schema(registry: &[Entry], classical: &[&str]) -> Value {
     json_schema::with_base(root, asking_for_task(json_schema::requirements(&sections)))
 }
 
-/// JSON Schema of `task = "predict"`, with the keys of each kind of problem under its kind.
+/// Returns the JSON Schema of `task = "predict"`, with the keys of each kind of problem under its kind.
 #[must_use]
 pub fn predict_schema(registry: &[Entry], classical: &[&str]) -> Value {
     let mut root = json_schema::tables(PREDICT_SECTIONS);
@@ -79,13 +79,13 @@ pub fn predict_schema(registry: &[Entry], classical: &[&str]) -> Value {
     json_schema::with_base(root, required)
 }
 
-/// Only the default task need not be named.
+/// Makes the key `task` required; only the default task may omit it.
 pub(crate) fn asking_for_task(mut required: Value) -> Value {
     json_schema::require(&mut required, "", "task");
     required
 }
 
-/// A list of methods takes known names only.
+/// Restricts the names in a list of methods to the known ones.
 fn name_methods(root: &mut Value, list: &str, registry: &[Entry], classical: &[&str]) {
     let ids: Vec<&str> = classical.iter().copied().chain(registry.iter().map(|entry| entry.id)).collect();
     if let Some(items) = root.pointer_mut(&format!("{list}/anyOf/0/items")) {
@@ -93,7 +93,7 @@ fn name_methods(root: &mut Value, list: &str, registry: &[Entry], classical: &[&
     }
 }
 
-/// What one or the other allows; keys of two estimators may share a name and no more.
+/// Returns a schema that allows what either of two schemas allows, for a key that several estimators share.
 fn either(known: Value, other: &Value) -> Value {
     let mut all = match known.get("anyOf").and_then(Value::as_array) {
         Some(all) => all.clone(),

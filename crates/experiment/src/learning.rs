@@ -1,4 +1,4 @@
-//! `task = "learn"`: dynamics learned from sets of records, judged on records never seen.
+//! `task = "learn"`: learners of dynamics, trained on sets of records and scored on unseen records.
 
 use crate::experiment::DataSettings;
 use crate::json_schema::{asking_for_task, put};
@@ -13,68 +13,69 @@ use serde_json::{Value, json};
 use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError, json_schema};
 use toml::Table;
 
-/// The name of the task.
+/// Name of the task.
 const TASK: &str = "learn";
 
-/// A learning study with every key checked.
+/// Learning study whose keys have all been checked.
 pub struct LearnStudy {
-    /// Start of the run folder's name.
+    /// Prefix of the run folder's name.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of every random draw.
     pub seed: u64,
-    /// Methods and budget.
+    /// Learners, baselines and budget.
     pub settings: LearnSettings,
-    /// The data sets, in the order written.
+    /// Data sets, in the order of the document.
     pub problems: Vec<LearningProblem>,
-    /// Every value in force.
+    /// All configuration values in force, defaults included.
     pub resolved: Resolved,
 }
 
-/// The section `learn`.
+/// Section `learn`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LearnSettings {
-    /// Names of the learners, each known; `None` for all there are.
+    /// Names of the learners, all known; `None` for all learners.
     pub learners: Option<Vec<String>>,
-    /// Names of the baselines, each known; `None` for all there are.
+    /// Names of the baselines, all known; `None` for all baselines.
     pub baselines: Option<Vec<String>>,
     problems: Option<Vec<String>>,
-    /// Cap on the steps of every fit.
+    /// Upper limit on the steps of every fit; `None` for each learner's own limit.
     pub max_steps: Option<u64>,
-    /// Whether learners are judged without what they learned, and given noise, too.
+    /// `true` if each learner is also scored with everything that it learned set to zero, and with noise as
+    /// its input.
     pub ablations: bool,
 }
 
-/// A section `problem.NAME`: a data set.
+/// Section `problem.NAME`: a data set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearningProblem {
-    /// NAME.
+    /// The NAME.
     pub id: String,
-    /// Title in words.
+    /// Title for tables and reports.
     pub title: String,
-    /// Where its records come from.
+    /// Source of the records.
     pub source: LearnSource,
-    /// File of the nominal simulator, where one is named.
+    /// File of the nominal simulator; `None` if the configuration names none.
     pub nominal: Option<String>,
-    /// Every how manieth sample is taken.
+    /// Decimation factor: one sample in every `every` is used.
     pub every: usize,
-    /// Whether the mean of the observed column is taken away.
+    /// `true` if the means of the observed column and of the input are subtracted.
     pub remove_mean: bool,
     split: SplitKeys,
 }
 
-/// Where records come from.
+/// Source of records.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LearnSource {
-    /// A configuration of a simulation: the records of its first system.
+    /// Path of a simulation's configuration; its first system gives the records.
     Simulation(String),
-    /// Files below a folder.
+    /// Record files in a folder.
     Files {
         /// The folder.
         folder: String,
-        /// Names, which may hold `*`.
+        /// File names; each may contain the wildcard `*`.
         records: Vec<String>,
-        /// How to read them.
+        /// Options for reading the files.
         reading: Box<DataSettings>,
     },
 }
@@ -92,7 +93,7 @@ struct SplitKeys {
     noise: Option<f64>,
 }
 
-/// What the input does between its samples, or that this is to be found out.
+/// Interpolation of the input between its samples; `Auto` determines it from the records.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum HoldKey {
@@ -112,8 +113,8 @@ impl HoldKey {
 }
 
 impl LearningProblem {
-    /// What a data set is made from, as far as the configuration says it; the nominal simulator and the unit are the
-    /// caller's.
+    /// Returns the options for making the data set that the configuration states. The caller supplies the
+    /// nominal simulator and the unit.
     #[must_use]
     pub fn making(&self) -> Making {
         let keys = &self.split;
@@ -302,19 +303,20 @@ const PROBLEM: &[Field] = &[
     },
 ];
 
-/// The keys of a problem: its own, and how its files are read.
+/// Returns the keys of a problem: its own, and those for reading its files.
 fn problem_fields() -> Vec<Field> {
     let reading = DATA.iter().filter(|field| field.key != "path").copied();
     PROBLEM.iter().copied().chain(reading).collect()
 }
 
-/// Whether a document asks for this task.
+/// Returns `true` if the document asks for this task.
 #[must_use]
 pub fn is_learning(document: &Document) -> bool {
     document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some(TASK))
 }
 
-/// Checks a document with `task = "learn"`, overrides applied, against the schema and the learners there are.
+/// Checks a document with `task = "learn"`, with overrides applied, against the schema and the known
+/// learners.
 ///
 /// # Errors
 /// [`SettingsError`], with file, line and column or the override that caused it.
@@ -396,7 +398,7 @@ fn read(
     })
 }
 
-/// The keys of a problem that say how its files are read.
+/// Reads the keys of a problem that control how its files are read.
 fn reading(resolved: &Resolved, section: &str) -> Result<DataSettings, SettingsError> {
     let own = resolved.settings().iter().filter(|setting| setting.section == section);
     let of_reading = own.filter(|setting| DATA.iter().any(|field| field.key == setting.field.key));
@@ -409,7 +411,7 @@ fn reading(resolved: &Resolved, section: &str) -> Result<DataSettings, SettingsE
     })
 }
 
-/// JSON Schema of `task = "learn"`, with the keys of each learner under its name.
+/// Returns the JSON Schema of `task = "learn"`, with the keys of each learner under its name.
 #[must_use]
 pub fn learn_schema(learners: &[Entry]) -> Value {
     let (top_fields, problem) = (top(), problem_fields());

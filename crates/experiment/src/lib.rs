@@ -1,7 +1,7 @@
-//! The configuration of an experiment: schema, overrides, checks, sweeps.
+//! Configuration of an experiment: schema, overrides, checks, sweeps.
 //!
-//! Pure: text in, checked settings out. What an estimator's section may hold comes from the registry's
-//! entry that is handed in; this crate knows no estimator.
+//! The crate is pure: it turns text into checked settings. The keys that an estimator's section may hold come
+//! from the registry entries that the caller passes; this crate knows no estimator.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

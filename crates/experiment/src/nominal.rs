@@ -1,8 +1,10 @@
-//! `nominal.toml`: what is believed of a system.
+//! `nominal.toml`: the nominal simulator of a system.
 //!
-//! The oscillator stands at the top of the file or, as in a configuration of `trainer simulate`, in `[nominal]`; the
-//! effects that the simulator has in `[[effects]]`. What such a configuration says besides, of records to be made, says
-//! nothing of the system and is left to it: a repaired simulator is a nominal one as it stands.
+//! The oscillator stands at the top of the file or, as in a configuration of `trainer simulate`, in
+//! `[nominal]`. The effects that the simulator has stand in `[[effects]]`. Such a configuration also holds
+//! tables about the records to be simulated. They do not describe the system and are ignored here, except
+//! that a table `[input]` marks the system as driven. A repaired simulator can therefore be read as a nominal
+//! one without changes.
 
 use dynamics::{
     Active, Coefficients, Coordinate, Effect, KnownEffect, Nominal, NominalSimulator, REGISTRY, Units,
@@ -11,14 +13,14 @@ use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
 use std::f64::consts::TAU;
 
-/// A nominal simulator as its file has it.
+/// Nominal simulator as stated by its file.
 #[derive(Debug, Clone)]
 pub struct StatedNominal {
     /// The oscillator.
     pub nominal: Nominal,
-    /// The oscillator with the effects that the simulator has already.
+    /// The oscillator with the effects that the simulator already has.
     pub simulator: NominalSimulator,
-    /// Whether the file speaks of an input: the records have to have one then.
+    /// `true` if the file mentions an input; the records must then have one.
     pub driven: bool,
 }
 
@@ -53,18 +55,18 @@ const NUMBER: Field = Field {
 const POSITIVE: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 const NON_NEGATIVE: Kind = Kind::Float { min: 0.0, max: f64::MAX };
 
-/// The keys of the oscillator.
+/// Keys of the oscillator.
 pub const NOMINAL: Section<'static> = Section { name: "", fields: FIELDS };
 
-/// The keys of each of `[[effects]]`, beside its parameters.
+/// Keys of each `[[effects]]` table, except its parameters.
 pub const KNOWN_EFFECT: Section<'static> = Section { name: "effects", fields: EFFECT };
 
-/// Keys that say how fast it swings; a file states one.
+/// Keys that state how fast the oscillator swings; a file states exactly one.
 pub const NOMINAL_SWINGS: [&str; 4] = ["stiffness", "natural_frequency", "natural_frequency_rad_s", "period"];
-/// Keys that say how fast it decays; a file states one.
+/// Keys that state how fast the oscillator decays; a file states exactly one.
 pub const NOMINAL_DECAYS: [&str; 2] = ["damping", "damping_ratio"];
 
-/// Tables of a simulation that say nothing of the system.
+/// Tables of a simulation's configuration that do not describe the system.
 const OF_RECORDS: [&str; 6] = ["simulate", "record", "start", "sensor", "input", "calibration"];
 
 const FIELDS: &[Field] = &[
@@ -144,7 +146,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-/// What a configuration of `trainer simulate` has at the top.
+/// Keys at the top of a configuration of `trainer simulate`.
 const OF_SIMULATION: &[Field] = &[
     Field { key: "task", kind: Kind::Choice(&["simulate"]), unit: "", ..NUMBER },
     Field { key: "name", kind: Kind::Text, unit: "", ..NUMBER },
@@ -178,14 +180,15 @@ const EFFECT: &[Field] = &[
     },
 ];
 
-/// Checks a document and makes the simulator that it states.
+/// Checks a document and builds the simulator that it states.
 ///
 /// # Errors
-/// [`SettingsError`] with line and column; [`SettingsError::Refused`] for numbers that no oscillator has.
+/// [`SettingsError`] with line and column; [`SettingsError::Refused`] for numbers that no oscillator can
+/// have.
 pub fn resolve_nominal(document: &Document) -> Result<StatedNominal, SettingsError> {
     let inside = document.leaves().iter().any(|leaf| leaf.key.starts_with("nominal."));
     let table = if inside { "nominal" } else { "" };
-    // A repaired simulator always states its gain; it is driven where it has a table for the input.
+    // A repaired simulator always states its gain, so only a table for the input shows that it is driven.
     let driven = if inside {
         document.leaves().iter().any(|leaf| leaf.key.starts_with("input."))
     } else {
@@ -225,7 +228,7 @@ fn dotted(table: &str, key: &str) -> String {
     if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
 }
 
-/// The units that numbers are in, for messages: per inertia where that is 1 or not given.
+/// Units of the numbers, for messages: per inertia if the inertia is 1 or not given, otherwise SI.
 fn units(document: &Document, table: &str) -> Units {
     let value = |key: &str| document.get(&dotted(table, key)).map(|leaf| &leaf.value);
     let coordinate = match value("coordinate").and_then(|value| value.as_str()) {
@@ -236,7 +239,7 @@ fn units(document: &Document, table: &str) -> Units {
     if inertia.unwrap_or(1.0) == 1.0 { Units::PerInertia(coordinate) } else { Units::Si(coordinate) }
 }
 
-/// The tables `[[effects]]`, each with the effect that it names.
+/// Reads the `[[effects]]` tables: the name of each table and its effect.
 fn effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsError> {
     let mut found: Vec<(String, Effect)> = Vec::new();
     for table in document.tables_below("effects") {
@@ -267,7 +270,7 @@ fn effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsError> 
 fn parameter_fields(effect: Effect, units: Units) -> Vec<Field> {
     let field = |parameter: &dynamics::Parameter| Field {
         key: parameter.name,
-        // A kind's bounds are included; what an open range leaves out, the effect refuses.
+        // A kind's bounds are inclusive; the effect itself refuses the endpoints of an open range.
         kind: Kind::Float { min: parameter.range.minimum, max: parameter.range.maximum },
         default: parameter.default.map_or(Default::Required, Default::Float),
         unit: parameter.quantity.unit(units),
@@ -277,10 +280,10 @@ fn parameter_fields(effect: Effect, units: Units) -> Vec<Field> {
     effect.description().parameters.iter().map(field).collect()
 }
 
-/// The one of several keys that a file states.
+/// Returns the one of several keys that a file states.
 ///
 /// # Errors
-/// Where it states two of them, or none that it has to.
+/// The file states two of the keys, or none of them.
 fn one_of<const N: usize>(
     document: &Document,
     table: &str,
@@ -289,7 +292,7 @@ fn one_of<const N: usize>(
     let mut stated = keys.iter().filter(|key| document.get(&dotted(table, key)).is_some());
     let alternatives = keys.join(", ");
     let Some(first) = stated.next() else {
-        // A list of alternatives has a first one.
+        // A list of alternatives always has a first entry.
         let key = keys.first().copied().unwrap_or_default();
         let field = FIELDS.iter().find(|field| field.key == key);
         return Err(SettingsError::Missing {
@@ -322,7 +325,7 @@ fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, Set
     };
     let given = |value: Option<f64>, key: &str, default: f64| match value {
         Some(value) => Ok(value),
-        // A frequency or a period says all that there is per unit of inertia.
+        // A frequency or a period determines everything per unit of inertia.
         None if !by_stiffness => Ok(default),
         None => Err(missing(key)),
     };

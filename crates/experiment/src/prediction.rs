@@ -1,4 +1,4 @@
-//! `task = "predict"`: many methods on several problems, scored on peaks that they did not see.
+//! `task = "predict"`: many methods on several problems, scored on held-out peaks.
 
 use crate::experiment::{CheckpointSettings, DataSettings, EnvelopeSettings, Pipeline, Top, pipelines};
 use crate::schema::{CHECKPOINT, DATA, PAPER, PLAIN, RECOMMENDED, TOP};
@@ -6,101 +6,101 @@ use estimator::Entry;
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
 
-/// The name of the task.
+/// Name of the task.
 const TASK: &str = "predict";
 
-/// A study of held-out prediction with every key checked.
+/// Study of held-out prediction whose keys have all been checked.
 pub struct PredictionStudy {
-    /// Start of the run folder's name.
+    /// Prefix of the run folder's name.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of every random draw.
     pub seed: u64,
-    /// How peaks are held out and how often.
+    /// Methods, number of draws, and rules for holding out peaks.
     pub settings: PredictionSettings,
-    /// How often what was computed is kept.
+    /// Interval between checkpoints.
     pub checkpoint: CheckpointSettings,
-    /// The problems to study, in the order written.
+    /// Problems to study, in the order of the document.
     pub problems: Vec<Problem>,
     /// Settings of the pipelines.
     pub envelope: EnvelopeSettings,
-    /// Every value in force.
+    /// All configuration values in force, defaults included.
     pub resolved: Resolved,
 }
 
-/// The section `predict`.
+/// Section `predict`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PredictionSettings {
-    /// Names of the methods, each known; `None` for all there are.
+    /// Names of the methods, all known; `None` for all methods.
     pub methods: Option<Vec<String>>,
     problems: Option<Vec<String>>,
-    /// Draws of a simulated problem.
+    /// Number of draws of a simulated problem.
     pub draws: usize,
-    /// Draws for methods that draw random numbers of their own, at most `draws`.
+    /// Number of draws for methods that use random numbers themselves; at most `draws`.
     pub draws_seeded: usize,
-    /// Interpolation: successive peaks in a block.
+    /// Interpolation: number of successive peaks in a block.
     pub block_peaks: usize,
-    /// Interpolation: of so many successive blocks one is held out.
+    /// Interpolation: one of every `every` successive blocks is held out.
     pub every: usize,
-    /// Extrapolation: the share of the peaks at the end that is held out.
+    /// Extrapolation: share of the peaks that is held out at the end.
     pub last_share: f64,
-    /// Level that adjusted p-values are held to.
+    /// Significance level for adjusted p-values.
     pub significance: f64,
-    /// Cap on the training steps.
+    /// Upper limit on the training steps; `None` for each method's own limit.
     pub max_steps: Option<u64>,
 }
 
-/// A section `problem.NAME`.
+/// Section `problem.NAME`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// NAME.
+    /// The NAME.
     pub id: String,
-    /// Title in words.
+    /// Title for tables and reports.
     pub title: String,
-    /// Where its envelope comes from.
+    /// Source of the envelope.
     pub source: ProblemSource,
 }
 
-/// Where a problem's envelope comes from.
+/// Source of a problem's envelope.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProblemSource {
-    /// A law with scatter.
+    /// Law of decay with added scatter.
     Simulated(SimulatedProblem),
-    /// A record file.
+    /// Record file.
     Record {
-        /// The record.
+        /// The record, and options for reading it.
         data: Box<DataSettings>,
-        /// The way to its envelope.
+        /// Pipeline that extracts the envelope.
         pipeline: Pipeline,
     },
 }
 
-/// A simulated problem. Amplitudes are angles, in rad.
+/// Simulated problem. Amplitudes are angles, in rad.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct SimulatedProblem {
-    /// The law.
+    /// Law of decay.
     pub kind: Law,
     /// Amplitude of the first peak, in rad.
     pub amplitude: f64,
     /// Period, in seconds.
     pub period_s: f64,
-    /// Peaks, two a period.
+    /// Number of peaks; there are two per period.
     pub peaks: usize,
-    /// λ of the viscous part, in 1/s.
+    /// Decay rate λ of the viscous part, in 1/s.
     pub decay_rate: f64,
-    /// Half-width of the dead zone, in rad; 0 where the law has none.
+    /// Half-width of the dead zone, in rad; 0 if the law has none.
     #[serde(default)]
     pub dead_zone: f64,
-    /// q, in 1/(s rad); 0 where the law has none.
+    /// Rate q of the quadratic damping, in 1/(s rad); 0 if the law has none.
     #[serde(default)]
     pub quadratic_rate: f64,
-    /// What the scatter is added to.
+    /// Quantity that the scatter is added to.
     pub scatter: ScatterKind,
-    /// Its standard deviation: in rad on the amplitude, a number on ln A.
+    /// Standard deviation of the scatter: in rad on the amplitude, dimensionless on ln A.
     pub scatter_size: f64,
 }
 
-/// A law of decay.
+/// Law of decay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
@@ -112,20 +112,20 @@ pub enum Law {
     ViscousQuadratic,
 }
 
-/// What scatter is added to.
+/// Quantity that scatter is added to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ScatterKind {
-    /// The amplitude, as a sensor's noise.
+    /// The amplitude, as with a sensor's noise.
     Amplitude,
-    /// ln A.
+    /// The log amplitude ln A.
     Logarithm,
 }
 
 /// Kinds of problems.
 pub(crate) const KINDS: &[&str] = &["exponential", "coulomb-viscous", "viscous-quadratic", "record"];
 
-/// Every section but those of the problems.
+/// All sections except those of the problems.
 pub(crate) const PREDICT_SECTIONS: &[Section<'static>] = &[
     Section { name: "", fields: TOP },
     Section { name: "predict", fields: PREDICT },
@@ -221,7 +221,7 @@ const PIPELINE: Field = Field {
     ..PLAIN
 };
 
-/// What every simulated problem has.
+/// Keys of every simulated problem.
 const SIMULATED: &[Field] = &[
     Field {
         key: "amplitude",
@@ -290,14 +290,15 @@ const QUADRATIC_RATE: Field = Field {
     ..PLAIN
 };
 
-/// Whether a document asks for this task.
+/// Returns `true` if the document asks for this task.
 #[must_use]
 pub fn is_prediction(document: &Document) -> bool {
     document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some(TASK))
 }
 
-/// Checks a document with `task = "predict"`, overrides applied, against the schema and what there is to
-/// choose from, as [`crate::resolve`] does the others.
+/// Checks a document with `task = "predict"`, with overrides applied, against the schema, the registry of
+/// estimators and the names of the classical methods. [`crate::resolve`] does the same for the tasks
+/// `estimate` and `compare`.
 ///
 /// # Errors
 /// [`SettingsError`], with file, line and column or the override that caused it.
@@ -350,13 +351,13 @@ fn fields(document: &Document, section: &str) -> Vec<Field> {
     fields_of(document.get(&format!("{section}.kind")).and_then(|leaf| leaf.value.as_str()))
 }
 
-/// The keys that a problem may have depend on its kind.
+/// Returns the keys that a problem may have, depending on its kind.
 pub(crate) fn fields_of(kind: Option<&str>) -> Vec<Field> {
     let common = [KIND, TITLE];
     let own: Vec<Field> = match kind {
         Some("record") => {
             DATA.iter()
-                // The shipped record is no default here: each problem says which record it is about.
+                // The shipped record is no default here: each problem names its own record.
                 .map(|field| {
                     if field.key == "path" { Field { default: Default::Required, ..*field } } else { *field }
                 })
@@ -366,7 +367,8 @@ pub(crate) fn fields_of(kind: Option<&str>) -> Vec<Field> {
         Some("exponential") => SIMULATED.to_vec(),
         Some("coulomb-viscous") => SIMULATED.iter().copied().chain([DEAD_ZONE]).collect(),
         Some("viscous-quadratic") => SIMULATED.iter().copied().chain([QUADRATIC_RATE]).collect(),
-        // A kind that is missing or wrong is what the message is to be about, not the keys that go with it.
+        // If the kind is missing or wrong, the message should be about the kind and not about the keys that
+        // go with it.
         _ => SIMULATED.iter().chain(DATA).copied().chain([PIPELINE, DEAD_ZONE, QUADRATIC_RATE]).collect(),
     };
     common.into_iter().chain(own).collect()
@@ -396,7 +398,7 @@ fn problem(resolved: &Resolved, id: &str, section: &str) -> Result<Problem, Sett
     Ok(Problem { id: id.to_owned(), title: head.title.unwrap_or_else(|| id.to_owned()), source })
 }
 
-/// Refuses a name that is not known.
+/// Refuses unknown names.
 pub(crate) fn all_known(
     document: &Document,
     key: &str,

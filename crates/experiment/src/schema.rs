@@ -1,14 +1,14 @@
-//! The configuration keys of an experiment, apart from the estimator's own.
+//! Configuration keys of an experiment, except those of the estimators.
 
 use envelope::RecommendedPipeline;
 use record::{ClockChoice, Format, Missing, Origin, TimeUnit, Unit};
 use settings::{Default, Field, Kind, Section};
 
-/// A field without unit and source, to be refined by struct update.
+/// Text field without unit and source; other fields refine it by struct update.
 pub(crate) const PLAIN: Field =
     Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
-/// Every section but those of a single task.
+/// All sections except those of a single task.
 pub const SECTIONS: &[Section<'static>] = &[
     Section { name: "", fields: TOP },
     Section { name: "data", fields: DATA },
@@ -19,7 +19,7 @@ pub const SECTIONS: &[Section<'static>] = &[
     Section { name: "checkpoint", fields: CHECKPOINT },
 ];
 
-/// The key that names the estimator, within the section `estimator`.
+/// Returns the key that names the estimator, within the section `estimator`.
 #[must_use]
 pub const fn estimator_name_field() -> Field {
     Field {
@@ -30,7 +30,7 @@ pub const fn estimator_name_field() -> Field {
     }
 }
 
-/// The section of `task = "compare"`.
+/// Section of `task = "compare"`.
 pub const COMPARE: Section<'static> = Section { name: "compare", fields: COMPARE_FIELDS };
 
 const COMPARE_FIELDS: &[Field] = &[
@@ -265,7 +265,7 @@ pub(crate) const RECOMMENDED: &[Field] = &[
     },
 ];
 
-/// How often a run keeps what it would lose: the section `checkpoint`.
+/// Section `checkpoint`: the interval between checkpoints.
 pub(crate) const CHECKPOINT: &[Field] = &[
     Field {
         key: "interval_s",

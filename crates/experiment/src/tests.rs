@@ -1,4 +1,4 @@
-//! Tests of the declarations, and of the way from a document to settings.
+//! Tests of the declarations, and of resolving documents into settings.
 
 use crate::prediction::{KINDS, PREDICT_SECTIONS, fields_of};
 use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
@@ -44,7 +44,7 @@ fn document(text: &str) -> Document {
     Document::parse("a.toml", text).unwrap()
 }
 
-/// Every declared key with the name of its section.
+/// Returns every declared key with the name of its section.
 fn declared() -> Vec<(String, Field)> {
     let sections = SECTIONS.iter().chain([&COMPARE]).chain(PREDICT_SECTIONS).chain([&NOMINAL, &KNOWN_EFFECT]);
     let fixed =
@@ -64,7 +64,7 @@ fn every_key_is_declared_whole() {
         assert!(field.meaning.ends_with('.') && field.meaning.len() > 8, "{place}: {}", field.meaning);
         let admitted = field.default.value().map(|value| field.kind.admit(&value));
         assert!(!matches!(admitted, Some(Err(_))), "{place}: its default is not admitted: {admitted:?}");
-        // The name of a key that ends in a unit says it, and so does the declaration.
+        // A key whose name ends in a unit declares the same unit.
         let endings = [
             ("_rad_s", "rad/s"),
             ("_s", "s"),
@@ -127,7 +127,7 @@ fn refused(text: &str) -> String {
     error.unwrap_err().to_string()
 }
 
-/// One value beyond each range or set of words.
+/// One value outside each range or set of words.
 #[test]
 fn values_beyond_what_is_declared_are_refused() {
     for wrong in [
@@ -349,7 +349,7 @@ fn a_nominal_simulator_has_effects_as_a_simulation_has() {
     assert_eq!(found.simulator.effects()[0].active.values(), [5.0, 0.1]);
     let found = resolve_nominal(&document(&format!("{oscillator}{held}"))).unwrap();
     assert!(!found.simulator.effects()[0].recalibrate);
-    // As a repaired simulator has it: the oscillator in a table, and what is said of records.
+    // A file as a repaired simulator has it: the oscillator in a table, and further tables about the records.
     let records = "task = \"simulate\"\nname = \"repaired\"\nseed = 0\n[record]\nrate_hz = 260.0\n[start]\nposition = 0.7\n[sensor]\nobserves = \"position\"\nnoise = 1e-3\n";
     let whole = format!("{records}[nominal]\n{oscillator}input_gain = 1.0\n{effect}");
     let repaired = resolve_nominal(&document(&whole)).unwrap();

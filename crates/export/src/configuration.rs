@@ -1,13 +1,13 @@
-//! `repaired.toml`: a configuration of `trainer simulate`.
+//! Export as `repaired.toml`, a configuration of `trainer simulate`.
 
 use crate::Repaired;
 use dynamics::chain::Observed;
 use dynamics::{Coordinate, Quantity};
 use std::fmt::Write;
 
-/// Writes a configuration that `trainer simulate` runs: the oscillator's coefficients in SI units or per inertia, the start, the
-/// sampling and the length of the first record, the effects one table each. It cannot hold a measured input: the waveform of a
-/// driven system's is `none`, with a comment.
+/// Writes a configuration that `trainer simulate` can run: the oscillator's coefficients in SI units or per
+/// inertia, the start, the sampling and length of the first record, and one table for each effect. A
+/// configuration cannot hold a measured input: for a driven system the waveform is `none`, with a comment.
 #[must_use]
 pub fn configuration(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -66,7 +66,7 @@ fn number(text: &mut String, key: &str, value: f64, unit: &str) {
     let _ = writeln!(text, "{:<48}# {unit}", format!("{key} = {value:?}"));
 }
 
-/// A sentence that stays within its comment.
+/// Joins a sentence to one line, so that it stays within its comment.
 pub(crate) fn one_line(sentence: &str) -> String {
     sentence.split_whitespace().collect::<Vec<_>>().join(" ")
 }

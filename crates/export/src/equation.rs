@@ -1,11 +1,11 @@
-//! The equation of motion, for people.
+//! Export of the equation of motion, for people.
 
 use crate::Repaired;
 use crate::configuration::one_line;
 use dynamics::{Coordinate, Description};
 use std::fmt::Write;
 
-/// Symbols of the coordinate and its derivatives: as text, and in LaTeX.
+/// Symbols of the coordinate and its first two derivatives, as text and in LaTeX.
 struct Letters {
     text: [&'static str; 3],
     latex: [&'static str; 3],
@@ -14,7 +14,7 @@ struct Letters {
 const LETTERS: Letters =
     Letters { text: ["θ", "θ′", "θ″"], latex: [r"\theta", r"\dot\theta", r"\ddot\theta"] };
 
-/// The left-hand side's coefficients with their symbols, values and units.
+/// Returns the coefficients of the left-hand side with their symbols, values and units.
 fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'static str)> {
     use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};
     let nominal = repaired.system.nominal();
@@ -29,8 +29,9 @@ fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'
     all.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, row)| row).collect()
 }
 
-/// Writes the equation of motion as text, θ being the coordinate; its numbers follow, one a line with their units, then
-/// the effects of the measurement chain, and what is not part of the simulator.
+/// Writes the equation of motion as text, with θ as the coordinate. The numbers follow with their units, one
+/// to a line, then the effects of the measurement chain and the parts of the diagnosis that the simulator
+/// leaves out.
 #[must_use]
 pub fn equation_text(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.text;
@@ -39,7 +40,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
     if nominal.stiffness() != 0.0 {
         let _ = write!(left, " + k ({x} - θ_rest)");
     }
-    // Effects say in words what a term alone does not: one a line, under its title.
+    // The words of an effect say more than its term: one effect to a line, under its title.
     let mut terms: Vec<String> = Vec::new();
     if repaired.driven() {
         terms.push("input: g u(t)".to_owned());
@@ -125,7 +126,7 @@ pub fn equation_latex(repaired: &Repaired) -> String {
     text
 }
 
-/// Every parameter of every effect.
+/// Returns every parameter of every effect with its symbol, value and unit.
 fn parameters(repaired: &Repaired) -> Vec<(&'static Description, &'static str, f64, &'static str)> {
     let all = repaired.system.effects().iter().chain(&repaired.chain);
     all.flat_map(|active| {
@@ -138,7 +139,7 @@ fn parameters(repaired: &Repaired) -> Vec<(&'static Description, &'static str, f
     .collect()
 }
 
-/// Words that LaTeX prints as they are, whatever orders they look like.
+/// Escapes words so that LaTeX prints them literally.
 fn latex_words(words: &str) -> String {
     let mut text = String::new();
     for letter in words.chars() {
@@ -162,7 +163,7 @@ fn latex_number(value: f64) -> String {
     }
 }
 
-/// `N m s/rad^2` as `N\,m\,s/rad$^2$`.
+/// Returns a unit as LaTeX: `N m s/rad^2` becomes `N\,m\,s/rad$^2$`.
 fn latex_unit(unit: &str) -> String {
     let mut text = String::new();
     let mut letters = unit.chars().peekable();
@@ -179,7 +180,7 @@ fn latex_unit(unit: &str) -> String {
     text
 }
 
-/// A symbol of the registry as LaTeX: Greek letters by name, what follows `_` as an index.
+/// Returns a symbol of the registry as LaTeX, with Greek letters by name and the part after `_` as an index.
 fn latex_symbol(symbol: &str) -> String {
     let mut text = String::new();
     for letter in symbol.chars() {

@@ -1,7 +1,8 @@
-//! A system with effects as text: for people, and for other simulators.
+//! Export of a system with effects as text: for people, and for other simulators.
 //!
-//! What an effect looks like elsewhere is said in the effect's own file (`dynamics::Export`); here those pieces are
-//! put together. What a format cannot express is said in a comment inside it, never left out in silence.
+//! The form of each effect in other languages is part of the effect's own file (`dynamics::Export`); this
+//! crate puts these parts together. What a format cannot express is stated in a comment inside it, never left
+//! out silently.
 //!
 //! # Example
 //!
@@ -51,9 +52,9 @@ pub use python::python;
 pub use repaired::Repaired;
 pub use robot::{mjcf, urdf};
 
-/// Writes the simulator in every form, each as the name of its file and its text: `repaired.toml` for `trainer simulate`,
-/// `equation.txt` and `equation.tex` for people, `repaired.py` for SciPy, `repaired.mo` for Modelica, `repaired.mjcf.xml` for MuJoCo
-/// and `repaired.urdf.xml` for a robot's description.
+/// Writes the simulator in every format and returns the file names with their texts: `repaired.toml` for
+/// `trainer simulate`, `equation.txt` and `equation.tex` for people, `repaired.py` for SciPy, `repaired.mo`
+/// for Modelica, `repaired.mjcf.xml` for MuJoCo and `repaired.urdf.xml` for robot descriptions.
 #[must_use]
 pub fn files(repaired: &Repaired) -> Vec<(&'static str, String)> {
     vec![

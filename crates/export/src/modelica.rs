@@ -1,12 +1,13 @@
-//! A Modelica model.
+//! Export as a Modelica model.
 
 use crate::Repaired;
 use crate::configuration::one_line;
 use crate::terms::Terms;
 use std::fmt::Write;
 
-/// Writes a Modelica model, `Repaired`, that starts where the first record does. Parameters are in SI units, or per inertia where
-/// the inertia is 1; `u` is the input of a driven system, and what Modelica cannot hold stands in a comment.
+/// Writes a Modelica model, `Repaired`, that starts in the initial state of the first record. Parameters are
+/// in SI units, or per inertia if the inertia is 1; `u` is the input of a driven system. What Modelica cannot
+/// express is stated in a comment.
 #[must_use]
 pub fn modelica(repaired: &Repaired) -> String {
     let terms = Terms::of(repaired);
@@ -15,7 +16,7 @@ pub fn modelica(repaired: &Repaired) -> String {
     text
 }
 
-/// Parameters, inputs and states.
+/// Returns the declarations of parameters, inputs and states.
 fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     let mut text = String::from("model Repaired \"The repaired simulator\"\n");
     text.push_str("  // Dry friction's sign is blurred over small_speed.\n");
@@ -51,7 +52,7 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     text
 }
 
-/// The equation of motion and the rates of hidden states.
+/// Appends the equation of motion and the rates of hidden states.
 fn equations(text: &mut String, repaired: &Repaired, terms: &Terms) {
     text.push_str("equation\n  der(position) = velocity;\n");
     text.push_str("  direction = tanh(velocity / small_speed);\n");
@@ -68,7 +69,7 @@ fn equations(text: &mut String, repaired: &Repaired, terms: &Terms) {
         "  inertia * der(velocity) = drive - damping * velocity - stiffness * (position - rest_angle)",
     );
     for term in &terms.torques {
-        // Modelica has no sign after a binary operator.
+        // Modelica allows no sign directly after a binary operator.
         let _ = write!(text, "\n    + ({}) /* {} */", term.expression, term.title);
     }
     text.push_str(";\n");

@@ -1,9 +1,9 @@
-//! A nominal simulator as the text of a configuration.
+//! Export of a nominal simulator as the text of a configuration.
 
 use dynamics::{KnownEffect, NominalSimulator};
 
-/// Writes a nominal simulator, with the effects that it has, as the text of a `nominal.toml`: inertia, damping, stiffness and rest
-/// position, each with its unit in a comment. Read again, it is the same simulator to the bit.
+/// Writes a nominal simulator with its effects as the text of a `nominal.toml`: inertia, damping, stiffness
+/// and rest position, each with its unit in a comment. Reading the text gives the same simulator to the bit.
 #[must_use]
 pub fn nominal_text(simulator: impl Into<NominalSimulator>) -> String {
     use dynamics::Quantity;

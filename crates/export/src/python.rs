@@ -1,12 +1,13 @@
-//! A Python function for SciPy.
+//! Export as a Python function for SciPy.
 
 use crate::Repaired;
 use crate::configuration::one_line;
 use crate::terms::Terms;
 use std::fmt::Write;
 
-/// Writes a Python module: `rhs(time, state)` for `scipy.integrate.solve_ivp`, where the state is position, velocity and what
-/// hidden states the effects have; the start state of the first record; and a simulation of it when the module is run.
+/// Writes a Python module with `rhs(time, state)` for `scipy.integrate.solve_ivp`, whose state is position,
+/// velocity and the hidden states of the effects. The module also has the initial state of the first record,
+/// and simulates that record when run.
 #[must_use]
 pub fn python(repaired: &Repaired) -> String {
     let terms = Terms::of(repaired);
@@ -16,7 +17,7 @@ pub fn python(repaired: &Repaired) -> String {
     text
 }
 
-/// What the module is, its constants and a helper.
+/// Returns the module's docstring, its constants and a helper.
 fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     let mut text = String::from(
         "\"\"\"The repaired simulator, for scipy.integrate.solve_ivp.\n\n\
@@ -47,7 +48,7 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     text
 }
 
-/// The right-hand side.
+/// Appends the right-hand side.
 fn derivative(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let names: String = terms.states.iter().map(|state| format!(", {}", state.name)).collect();
     let _ = write!(
@@ -70,7 +71,7 @@ fn derivative(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let _ = write!(text, "    return [velocity, acceleration{rates}]\n\n\n");
 }
 
-/// The start, and the motion of the first record where the module is run.
+/// Appends the initial state, and the simulation of the first record when the module is run.
 fn simulation(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let starts: String = terms.states.iter().map(|state| format!(", {}", state.start)).collect();
     let _ = write!(
@@ -100,7 +101,8 @@ fn simulation(text: &mut String, repaired: &Repaired, terms: &Terms) {
     );
 }
 
-/// No step skips what happens within a thirtieth of a period, such as a touch of a stop.
+/// Returns the longest step: a thirtieth of a period, so that no step skips an event such as the contact with
+/// a stop.
 fn longest_step(repaired: &Repaired) -> f64 {
     let frequency = repaired.system.nominal().angular_frequency();
     if frequency > 0.0 { std::f64::consts::TAU / frequency / 30.0 } else { repaired.seconds / 1000.0 }

@@ -1,4 +1,4 @@
-//! What is exported.
+//! The simulator to be exported.
 
 use dynamics::chain::Observed;
 use dynamics::{Active, Hold, Quantity, Start, System, Units};
@@ -6,17 +6,17 @@ use dynamics::{Active, Hold, Quantity, Start, System, Units};
 /// A nominal simulator with the effects that it lacked, and the sensor and sampling of the first record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repaired {
-    /// The oscillator with the effects in the system.
+    /// Oscillator with the effects in the system.
     pub system: System,
-    /// Units of its numbers: those of the simulator as it was given.
+    /// Units of the numbers: those of the nominal simulator as it was given.
     pub units: Units,
-    /// The effects in the measuring chain.
+    /// Effects in the measurement chain.
     pub chain: Vec<Active>,
-    /// Parts of the diagnosis that cannot be part of the simulator, each in a sentence.
+    /// Parts of the diagnosis that cannot be part of the simulator, one sentence each.
     pub left_out: Vec<String>,
-    /// What the input that drives it does between its samples; `None` where nothing drives it.
+    /// Course of the input between its samples; `None` without an input.
     pub input: Option<Hold>,
-    /// Where the motion of the first record starts.
+    /// Initial state of the first record.
     pub start: Start,
     /// Quantity that the sensor observes.
     pub observed: Observed,
@@ -29,13 +29,14 @@ pub struct Repaired {
 }
 
 impl Repaired {
-    /// Whether an input drives it.
+    /// Returns `true` if an input drives the system.
     #[must_use]
     pub fn driven(&self) -> bool {
         self.input.is_some()
     }
 
-    /// Returns the unit's symbol of a quantity; that of the observed one follows from [`observed`](Self::observed).
+    /// Returns the symbol of a quantity's unit; for the observed quantity it follows from
+    /// [`observed`](Self::observed).
     #[must_use]
     pub fn unit(&self, quantity: Quantity) -> &'static str {
         quantity.unit_seen(self.units, self.observed)

@@ -1,4 +1,4 @@
-//! A joint for MuJoCo and for URDF.
+//! Export as a joint for MuJoCo and for URDF.
 
 use crate::Repaired;
 use crate::configuration::one_line;
@@ -6,11 +6,12 @@ use crate::terms::JointTerms;
 use dynamics::{Coordinate, Units};
 use std::fmt::Write;
 
-/// Gravity of the model in m/s².
+/// Gravitational acceleration of the model, in m/s².
 const GRAVITY: f64 = 9.81;
 
-/// Writes a MuJoCo model of one body on one joint: damping, stiffness, springref, frictionloss, and inertia as armature beside
-/// what a mass that hangs on the joint has. Effects that are no attribute of a joint stand in a comment.
+/// Writes a MuJoCo model of one body on one joint with damping, stiffness, springref and frictionloss. The
+/// armature holds the inertia that the mass hanging on the joint does not have. Effects that no attribute of
+/// a joint can express are stated in a comment.
 #[must_use]
 pub fn mjcf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -21,8 +22,9 @@ pub fn mjcf(repaired: &Repaired) -> String {
         Coordinate::Angle => ("hinge", "0 1 0"),
         Coordinate::Displacement => ("slide", "1 0 0"),
     };
-    // A point mass at a distance that carries half of the inertia has the weight asked for; body and armature share
-    // the rest. MuJoCo takes no body whose mass or inertia is below 1e-15, so that none is a small part of the whole.
+    // A point mass at a distance, carrying half of the inertia, has the required weight; body and armature
+    // share the rest. MuJoCo refuses bodies whose mass or inertia is below 1e-15, so no part is a small share
+    // of the whole.
     let inertia = nominal.inertia();
     let (mass, place, own) = match terms.weight {
         Some((torque, angle)) => {
@@ -30,7 +32,7 @@ pub fn mjcf(repaired: &Repaired) -> String {
             let arm = torque / (mass * GRAVITY);
             (mass, [-arm * angle.sin(), 0.0, -arm * angle.cos()], inertia / 4.0)
         }
-        // On the axis of a hinge a mass moves nothing; of a slide it is the inertia.
+        // A mass on the axis of a hinge moves nothing; on a slide it is the inertia.
         None => (inertia / 2.0, [0.0; 3], inertia / 2.0),
     };
     let armature = own;
@@ -48,7 +50,7 @@ pub fn mjcf(repaired: &Repaired) -> String {
         terms.rest,
     );
     if let Some(friction) = terms.friction {
-        // MuJoCo's friction yields a little; by default so much that it is a part of the answer.
+        // MuJoCo's friction yields a little, and with its defaults so much that the motion changes.
         let _ = write!(
             text,
             " frictionloss=\"{friction:?}\" solreffriction=\"{:?} 1\" solimpfriction=\"0.9999 0.9999 0.001\"",
@@ -64,17 +66,17 @@ pub fn mjcf(repaired: &Repaired) -> String {
     text
 }
 
-/// A thousandth of a period, and no more than a millisecond.
+/// Returns a thousandth of a period, but at most a millisecond.
 fn timestep(repaired: &Repaired) -> f64 {
     let frequency = repaired.system.nominal().angular_frequency();
     if frequency > 0.0 { (std::f64::consts::TAU / frequency / 1000.0).min(1e-3) } else { 1e-3 }
 }
 
-/// A limit beyond any motion, in whatever unit, that single precision still holds.
+/// A limit beyond any motion, in any unit, that single precision can hold.
 const UNBOUNDED: &str = "1e9";
 
-/// Writes the `<dynamics>` of a URDF joint, which holds damping and friction only; a joint that slides has a `<limit>`, too, which
-/// bounds nothing. Everything else stands in a comment.
+/// Writes the `<dynamics>` of a URDF joint, which holds only damping and friction. A sliding joint also has a
+/// `<limit>` that bounds nothing. Everything else is stated in a comment.
 #[must_use]
 pub fn urdf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -99,7 +101,7 @@ pub fn urdf(repaired: &Repaired) -> String {
     }
     let (kind, limit) = match nominal.coordinate() {
         Coordinate::Angle => ("continuous", String::new()),
-        // Without limits a prismatic joint is refused, and bounds that are not stated are 0.
+        // A prismatic joint without limits is refused, and bounds that are not stated are 0.
         Coordinate::Displacement => (
             "prismatic",
             format!(
@@ -115,7 +117,7 @@ pub fn urdf(repaired: &Repaired) -> String {
         text,
         "  <parent link=\"base\"/>\n  <child link=\"body\"/>\n{limit}  <dynamics damping=\"{:?}\" friction=\"{:?}\"/>\n</joint>\n",
         nominal.damping(),
-        // A joint without dry friction has the format's own default.
+        // Without dry friction the value is the format's own default.
         terms.friction.unwrap_or(0.0)
     );
     text

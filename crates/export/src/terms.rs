@@ -1,9 +1,9 @@
-//! The effects of a system as named constants, states and expressions, for languages that read alike.
+//! The effects of a system as named constants, states and expressions, for languages with similar syntax.
 
 use crate::Repaired;
 use dynamics::{Active, Description, Effect, Joint};
 
-/// A constant with the comment that belongs to it.
+/// A constant with its comment.
 pub(crate) struct Constant {
     pub(crate) name: String,
     pub(crate) value: f64,
@@ -17,20 +17,20 @@ pub(crate) struct State {
     pub(crate) start: String,
 }
 
-/// A torque with the effect that it is of.
+/// A torque with the title of its effect.
 pub(crate) struct Term {
     pub(crate) title: &'static str,
     pub(crate) expression: String,
 }
 
-/// A system taken apart.
+/// A system split into its terms.
 pub(crate) struct Terms {
     pub(crate) constants: Vec<Constant>,
     pub(crate) states: Vec<State>,
     pub(crate) torques: Vec<Term>,
-    /// Delay of the input in seconds.
+    /// Delay of the input, in seconds.
     pub(crate) delay: Option<f64>,
-    /// What these terms leave out, each in a sentence.
+    /// Parts that these terms leave out, one sentence each.
     pub(crate) left_out: Vec<String>,
     /// Speed below which the direction of motion is blurred.
     pub(crate) small_speed: f64,
@@ -101,17 +101,17 @@ impl Terms {
     }
 }
 
-/// The name of an effect's own quantity.
+/// Returns the name of an effect's own quantity.
 fn own(description: &Description, name: &str) -> String {
     format!("{}_{name}", description.id)
 }
 
-/// An expression with the braces filled.
+/// Returns an expression with its braces filled in.
 fn filled(expression: &str, description: &Description) -> String {
     expression.replace('{', &format!("{}_", description.id)).replace('}', "")
 }
 
-/// An effect's parameters by symbol, with values and units.
+/// Returns the parameters of an effect by symbol, with values and units.
 fn values(repaired: &Repaired, active: &Active) -> String {
     let parameters = active.effect().description().parameters.iter().zip(active.values());
     let stated: Vec<String> = parameters
@@ -122,7 +122,8 @@ fn values(repaired: &Repaired, active: &Active) -> String {
     stated.join(", ")
 }
 
-/// What acts between the motion and the file, and what could not be part of the repaired simulator.
+/// Returns the effects between the motion and the file, and the parts that could not be part of the repaired
+/// simulator.
 pub(crate) fn left_out(repaired: &Repaired) -> Vec<String> {
     let measured = repaired.chain.iter().map(|active| {
         let description = active.effect().description();
@@ -136,7 +137,7 @@ pub(crate) fn left_out(repaired: &Repaired) -> Vec<String> {
     measured.chain(repaired.left_out.iter().cloned()).collect()
 }
 
-/// A hundred-thousandth of the largest speed of the start: so slow a creep moves nothing that is seen.
+/// Returns a hundred-thousandth of the largest initial speed: a creep this slow has no visible effect.
 fn small_speed(repaired: &Repaired) -> f64 {
     let nominal = repaired.system.nominal();
     let swing = (repaired.start.position - nominal.rest_angle()).abs() * nominal.angular_frequency();
@@ -144,7 +145,7 @@ fn small_speed(repaired: &Repaired) -> f64 {
     if speed > 0.0 { 1e-5 * speed } else { 1e-5 }
 }
 
-/// What a joint of a robot's description can hold, and in sentences what it cannot.
+/// Terms that a joint of a robot description can hold, with sentences on the others.
 pub(crate) struct JointTerms {
     pub(crate) friction: Option<f64>,
     pub(crate) rest: f64,

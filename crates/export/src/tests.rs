@@ -1,4 +1,4 @@
-//! Of the texts for people.
+//! Tests of the texts for people.
 
 use crate::{Repaired, configuration, equation_latex, equation_text, files, python, urdf};
 use dynamics::chain::Observed;
@@ -119,7 +119,7 @@ fn an_equation_says_in_a_sentence_what_is_not_part_of_it() {
     assert!(latex.ends_with("  \\item Not part of it: every effect.\n\\end{itemize}\n"), "{latex}");
 }
 
-/// Every character that LaTeX takes for an order, and what it is printed by.
+/// Covers every special character of LaTeX and its printed form.
 #[test]
 fn words_stay_words_in_latex() {
     let mut all = repaired(pendulum(), &[]);
@@ -129,7 +129,7 @@ fn words_stay_words_in_latex() {
     assert!(latex.contains(item), "{latex}");
 }
 
-/// urdfdom takes a prismatic joint with limits only, and bounds that are left out are 0 each: nothing could move.
+/// urdfdom accepts a prismatic joint only with limits, and omitted bounds are 0, so that nothing could move.
 #[test]
 fn a_joint_that_slides_has_limits_and_one_that_turns_has_none() {
     let turning = repaired(pendulum(), &[]);

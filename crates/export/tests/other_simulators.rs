@@ -1,6 +1,7 @@
-//! What is exported, run by the programs it is exported to, against our own simulation: within 1 % of its RMS.
+//! Runs the exported models in their programs and compares the motion with our own simulation: within 1 % of
+//! its RMS.
 //!
-//! Where Python, SciPy or MuJoCo are not installed the tests say so and check nothing.
+//! If Python, SciPy or MuJoCo are not installed, the tests report it and check nothing.
 
 #![allow(
     clippy::unwrap_used,
@@ -21,7 +22,7 @@ use std::process::Command;
 const RATE: f64 = 100.0;
 const SECONDS: f64 = 8.0;
 
-/// Every effect in the system, strong enough to be seen many times over 1 % of the motion.
+/// All effects in the system, each strong enough to change the motion by many times 1 %.
 const CASES: &[(&str, &[f64])] = &[
     ("coulomb_friction", &[6e-4]),
     ("stribeck_friction", &[3e-4, 1e-3, 1.0]),
@@ -44,7 +45,7 @@ const CASES: &[(&str, &[f64])] = &[
     ("unlisted_stiffness", &[0.2]),
 ];
 
-/// The case of an effect.
+/// Returns the case of an effect.
 fn case(id: &str) -> (&'static str, &'static [f64]) {
     *CASES.iter().find(|(own, _)| *own == id).unwrap()
 }
@@ -57,7 +58,7 @@ fn repaired(effects: &[(&str, &[f64])]) -> Repaired {
     of_size(1.0, effects)
 }
 
-/// The same motion of a body so many times as large.
+/// Returns a body `size` times as large with the same motion.
 fn of_size(size: f64, effects: &[(&str, &[f64])]) -> Repaired {
     let nominal = Nominal::new(size * 5e-4, size * 1.9e-4, size * 0.238, 0.02).unwrap();
     let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
@@ -79,7 +80,8 @@ fn times() -> Vec<f64> {
     (0..(RATE * SECONDS) as usize).map(|index| index as f64 / RATE).collect()
 }
 
-/// The input of driven cases, fine enough that holding it between knots is as good as the formula.
+/// Returns the input of driven cases. `own` interpolates it between knots that are dense enough to be as good
+/// as the formula.
 fn drive(time: f64) -> f64 {
     0.012 * (17.0 * time).sin()
 }
@@ -92,7 +94,7 @@ fn own(repaired: &Repaired) -> Vec<f64> {
     simulate(&repaired.system, repaired.start, input, &times(), &Tolerance::default()).unwrap().position
 }
 
-/// RMS of the difference over that of the motion about its mean.
+/// Returns the RMS of the difference over the RMS of the motion about its mean.
 fn distance(found: &[f64], own: &[f64]) -> f64 {
     assert_eq!(found.len(), own.len());
     let mean = own.iter().sum::<f64>() / own.len() as f64;
@@ -100,7 +102,7 @@ fn distance(found: &[f64], own: &[f64]) -> f64 {
     (squares / own.iter().map(|b| (b - mean).powi(2)).sum::<f64>()).sqrt()
 }
 
-/// A fresh folder of this name below cargo's own for tests.
+/// Returns an empty folder of this name below cargo's folder for tests.
 fn scratch(name: &str) -> std::path::PathBuf {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
@@ -110,8 +112,8 @@ fn scratch(name: &str) -> std::path::PathBuf {
     folder
 }
 
-/// Runs a script with a folder as its argument; each line that it prints is one case's positions. `None`, loudly, where
-/// what it imports is not there.
+/// Runs a script with a folder as its argument; each printed line holds the positions of one case. Reports it
+/// and returns `None` if the script's imports are missing.
 fn run(script: &str, folder: &std::path::Path, needs: &str) -> Option<Vec<Vec<f64>>> {
     let there = Command::new("python3").args(["-c", needs]).output();
     if !there.is_ok_and(|output| output.status.success()) {
@@ -175,7 +177,7 @@ fn the_python_function_moves_as_our_own_simulation_does() {
         if let [(id, _)] = case.as_slice()
             && !is_driven(id)
         {
-            // Otherwise agreeing would say nothing about the effect.
+            // Otherwise the agreement would say nothing about the effect.
             let moved = distance(&bare, &own);
             assert!(moved > 0.05, "{id}: {moved}");
         }
@@ -194,7 +196,7 @@ fn the_mujoco_joint_moves_as_our_own_simulation_does() {
         assert!(!text.contains("Not part of it"), "{text}");
         std::fs::write(name, text).unwrap();
     }
-    // A balance wheel and smaller: MuJoCo takes no body of less than 1e-15.
+    // A balance wheel and a smaller body: MuJoCo refuses bodies of less than 1e-15.
     std::fs::write(folder.join("case_05.xml"), mjcf(&of_size(1e-6, &[]))).unwrap();
     std::fs::write(folder.join("case_06.xml"), mjcf(&of_size(1e-9, &[]))).unwrap();
     let Some(found) = run(MUJOCO, &folder, "import mujoco") else { return };

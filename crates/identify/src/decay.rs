@@ -1,4 +1,4 @@
-//! An oscillator read from the turning points of a free decay.
+//! Linear oscillator from the turning points of a free decay.
 
 use crate::observed::order;
 use crate::{Basis, Estimated, LinearOscillator};
@@ -6,10 +6,12 @@ use envelope::{Envelope, RecommendedPipeline};
 use record::{Clock, Record};
 use std::f64::consts::PI;
 
-/// Frequency from the times of turning points, damping from their heights; `None` where a record has too few.
+/// Estimates the frequency from the times of turning points and the damping from their heights. `None` if a
+/// record has too few turning points.
 ///
-/// Turning points follow each other by half a period π/ω_d, so that ω_d is π over the slope of their times on their
-/// number; λ is the slope of the logarithms of their heights. Then ω₀² = ω_d² + λ² and 2ζω₀ = 2λ.
+/// Turning points follow each other after half a period π/ω_d. So ω_d is π divided by the slope of their
+/// times against their number, and −λ is the slope of the logarithms of their heights. Then ω₀² = ω_d² + λ²
+/// and 2ζω₀ = 2λ.
 pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscillator> {
     let extraction = RecommendedPipeline::DEFAULT.extract(record, clock).ok()?;
     let envelope = &extraction.envelope;
@@ -24,7 +26,8 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     };
     let rest = (order(record.quantity()) == 0).then(|| Estimated {
         value: extraction.offset,
-        // The offset is a median of means of three heights, each as uncertain as the line leaves them.
+        // The offset is a median of means of three heights, each with the scatter of the heights about the
+        // line.
         std_error: scatter(envelope, &line) / (envelope.len() as f64).sqrt(),
     });
     Some(LinearOscillator {
@@ -36,8 +39,8 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     })
 }
 
-/// Slope of the turning points' times on their number, in seconds, by least squares. They are counted by a rough value, so
-/// that one that is missed shifts none of the others.
+/// Returns the slope of the turning points' times against their number, in seconds, by least squares. A rough
+/// half period numbers them, so that a missed turning point does not shift the numbers of the others.
 fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
     let times = envelope.times_s();
     let count = times.len() as f64;
@@ -60,7 +63,7 @@ fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
     (slope > 0.0).then_some(Estimated { value: slope, std_error })
 }
 
-/// Root mean square distance of the heights from the fitted decay, in the record's unit.
+/// Returns the root mean square distance of the heights from the fitted decay, in the record's unit.
 fn scatter(envelope: &Envelope, line: &oracle::DecayFit) -> f64 {
     let squares: f64 = envelope
         .times_s()

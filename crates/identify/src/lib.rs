@@ -1,8 +1,10 @@
-//! The linear oscillator nearest to a record: a first guess of a nominal simulator where nobody has one.
+//! Identification of the linear oscillator nearest to a record: a first nominal simulator if there is none
+//! yet.
 //!
-//! Per unit of inertia, θ̈ + 2ζω₀·θ̇ + ω₀²·(θ − θ_rest) = g·u(t). A free decay is read from its turning points
-//! (`decay`): these know the damping best. A record with an input, or without turning points enough, is read by
-//! a regression in weak form (`weak`), which differentiates smooth windows in place of noisy samples.
+//! Per unit of inertia, θ̈ + 2ζω₀·θ̇ + ω₀²·(θ − θ_rest) = g·u(t). A free decay is identified from its turning
+//! points (`decay`), which determine the damping best. A record with an input, or with too few turning
+//! points, is identified by a regression in weak form (`weak`), which differentiates smooth windows instead
+//! of noisy samples.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -18,10 +20,11 @@ pub use oscillator::{Basis, Estimated, LinearOscillator};
 use observed::input;
 use record::{Clock, Record};
 
-/// Reads the linear oscillator nearest to a record under a clock. Linear in the number of samples.
+/// Identifies the linear oscillator nearest to a record under a clock. The run time is linear in the number
+/// of samples.
 ///
 /// # Errors
-/// [`IdentifyError`] where nothing moves, where the record is shorter than a few swings, or where its motion does not
+/// [`IdentifyError`] if nothing moves, if the record is shorter than a few swings, or if its motion does not
 /// tell the coefficients apart.
 pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, IdentifyError> {
     let values = record.values();
@@ -44,7 +47,8 @@ mod tests {
 
     const RATE: f64 = 200.0;
 
-    /// A swing of damping ratio `zeta` at 2 Hz about 0.1, by exact steps under an input held between samples.
+    /// A swing of damping ratio `zeta` at 2 Hz about 0.1: 20 midpoint steps per sample, with the input held
+    /// between samples.
     fn record(zeta: f64, noise: f64, input: Option<fn(f64) -> f64>, seed: u64) -> Record {
         let omega = 2.0 * std::f64::consts::TAU;
         let mut draws = Seed::new(seed).child("noise").generator();
@@ -100,7 +104,8 @@ mod tests {
         }
     }
 
-    /// An input that alternates from row to row was seen at every third row only, where it has the same sign each time.
+    /// The input alternates between rows and is recorded at every third row only, where it always has the
+    /// same sign.
     #[test]
     fn an_input_acts_where_the_sensor_says_nothing() {
         let alternating = |time: f64| {
@@ -119,7 +124,8 @@ mod tests {
         let between = (0..whole.len()).filter(|row| row % 3 != 0);
         let row = |row: usize| InputRow { row, stamp_s: stamps[row], input: input[row] };
         let told = rest(&record.with_input_rows(between.map(row).collect()));
-        // Three times the input's mean of 1 over ω² that nobody sees: 19 mrad.
+        // The recorded rows have a mean of 1 that the whole input does not have; times the gain of 3, over
+        // ω²: 19 mrad.
         assert!((blind - 0.1).abs() > 0.015, "{blind}");
         assert!((told - 0.1).abs() < 1e-3, "{told}");
     }

@@ -1,9 +1,9 @@
-//! What a record says of its input and of what its sensor observes.
+//! Input and order of differentiation of a record.
 
 use record::{Clock, Quantity, Record};
 
-/// Times and values of the input where it drives anything, with those of rows that hold no value of the sensor's; an input
-/// that never changes tells no gain.
+/// Returns times and values of the input, including rows without a value of the sensor. `None` if there is no
+/// input or it never changes: a constant input does not determine a gain.
 pub(crate) fn input(record: &Record, clock: &Clock) -> Option<Vec<(f64, f64)>> {
     let own = record.input().filter(|input| input.windows(2).any(|pair| pair.first() != pair.last()))?;
     let sampled = clock.times_s.iter().copied().zip(own.iter().copied());
@@ -12,7 +12,7 @@ pub(crate) fn input(record: &Record, clock: &Clock) -> Option<Vec<(f64, f64)>> {
     Some(input)
 }
 
-/// How often the observed quantity was differentiated.
+/// Returns the number of times that the observed quantity is differentiated.
 pub(crate) fn order(quantity: Quantity) -> usize {
     match quantity {
         Quantity::Position => 0,

@@ -1,40 +1,42 @@
-//! A linear oscillator with the errors of its numbers.
+//! Linear oscillator with the standard errors of its coefficients.
 
-/// A number with its standard error, in the same unit.
+/// Value with its standard error, in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimated {
-    /// The number.
+    /// The value.
     pub value: f64,
-    /// Its standard error.
+    /// Standard error of the value.
     pub std_error: f64,
 }
 
-/// A linear oscillator per unit of inertia.
+/// Linear oscillator per unit of inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearOscillator {
-    /// Stiffness over inertia, ω₀², in 1/s²; 0 where the record shows no restoring torque.
+    /// Stiffness over inertia, ω₀², in 1/s²; 0 if the record shows no restoring torque.
     pub stiffness: Estimated,
-    /// Damping over inertia, 2ζω₀, in 1/s; negative where the swing grows.
+    /// Damping over inertia, 2ζω₀, in 1/s; negative if the swing grows.
     pub damping: Estimated,
-    /// Rest position, in the record's unit; `None` where the sensor observes no position or nothing restores it.
+    /// Rest position, in the record's unit; `None` if the sensor does not observe the position or there is no
+    /// restoring torque.
     pub rest: Option<Estimated>,
-    /// Acceleration per unit of the input; `None` for a record without one.
+    /// Acceleration per unit of the input; `None` for a record without an input that changes.
     pub input_gain: Option<Estimated>,
-    /// What the numbers were read from.
+    /// Data that the coefficients were estimated from.
     pub basis: Basis,
 }
 
-/// What an oscillator was read from.
+/// Data that an oscillator was estimated from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Basis {
-    /// So many turning points of a free decay.
+    /// Turning points of a free decay: their number.
     TurningPoints(usize),
-    /// A regression over so many smooth windows.
+    /// Regression over smooth windows: their number.
     Windows(usize),
 }
 
 impl LinearOscillator {
-    /// Undamped natural frequency ω₀/2π in Hz, with its standard error to first order; `None` without a restoring torque.
+    /// Returns the undamped natural frequency ω₀/2π in Hz, with its first-order standard error; `None`
+    /// without a restoring torque.
     #[must_use]
     pub fn natural_frequency_hz(&self) -> Option<Estimated> {
         let omega = self.omega()?;
@@ -43,11 +45,11 @@ impl LinearOscillator {
         Some(Estimated { value: omega, std_error }.times(1.0 / std::f64::consts::TAU))
     }
 
-    /// Damping ratio ζ = damping/(2ω₀), without unit, with the standard error of the damping alone; `None` without a restoring
-    /// torque.
+    /// Returns the damping ratio ζ = damping/(2ω₀), dimensionless, with the standard error of the damping
+    /// alone; `None` without a restoring torque.
     #[must_use]
     pub fn damping_ratio(&self) -> Option<Estimated> {
-        // The frequency is known far better than the damping, so that its error adds nothing.
+        // The frequency is known far better than the damping, so that its error adds almost nothing.
         Some(self.damping.times(0.5 / self.omega()?))
     }
 

@@ -1,12 +1,13 @@
-//! An oscillator read by regression in weak form.
+//! Linear oscillator by regression in weak form.
 //!
-//! The equation of motion is multiplied by a smooth window φ that vanishes with its first derivatives at both ends, and
-//! integrated by parts until nothing but φ is differentiated (Shinbrot 1957; Messenger, Bortz 2021):
+//! The equation of motion is multiplied by a smooth window φ that vanishes, with its first derivatives, at
+//! both ends. It is integrated by parts until only φ is differentiated (Shinbrot 1957; Messenger, Bortz
+//! 2021):
 //!
 //!   ∫φ″·θ = 2ζω₀·∫φ′·θ − ω₀²·∫φ·θ + g·∫φ·u + b·∫φ, with b = ω₀²·θ_rest.
 //!
-//! Each window gives one equation that is linear in the coefficients. A velocity obeys the same equation with u̇ for u,
-//! an acceleration with ü: the derivatives fall on φ again.
+//! Each window gives one equation that is linear in the coefficients. A velocity obeys the same equation with
+//! u̇ in place of u, an acceleration with ü; these derivatives again move to φ.
 
 use crate::observed::{input, order};
 use crate::{Basis, Estimated, IdentifyError, LinearOscillator};
@@ -15,17 +16,17 @@ use nalgebra::{DMatrix, DVector};
 use record::{Clock, Record};
 use std::f64::consts::TAU;
 
-/// Samples that the time scale is looked for in; more add nothing to it.
+/// Most samples that the search for the time scale uses; more would not improve it.
 const MOST_SAMPLES: usize = 8192;
-/// Frequencies tried for the time scale.
+/// Number of frequencies tried for the time scale.
 const FREQUENCIES: u32 = 400;
-/// Windows for each coefficient that is fitted.
+/// Fewest windows per fitted coefficient.
 const WINDOWS_EACH: usize = 3;
-/// Exponent of the windows (1 − s²)ⁿ.
+/// Exponent n of the windows (1 − s²)ⁿ.
 const EXPONENT: i32 = 4;
-/// A step between samples that is so many times the usual one is a gap.
+/// Smallest step between samples that counts as a gap, in usual steps.
 const GAP: f64 = 4.0;
-/// Standard errors that a restoring torque has to stand above zero.
+/// Smallest stiffness that counts as a restoring torque, in its standard errors.
 const SIGNIFICANT: f64 = 3.0;
 
 /// Fits damping, stiffness, input gain and rest position to all windows of a record.
@@ -53,17 +54,18 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Result<LinearOscilla
     })
 }
 
-/// One window: ∫φ″·θ, then ∫φ′·θ, −∫φ·θ, ∫φ and the input's integral.
+/// One window's equation: ∫φ″·θ, then ∫φ′·θ, −∫φ·θ, ∫φ and the integral of the input.
 type Row = (f64, [f64; 4]);
 
-/// Damping, stiffness, shift and gain by least squares, each with its standard error; 0 for what is not fitted.
+/// Fits damping, stiffness, shift and gain by least squares, each with its standard error; 0 for those not
+/// fitted.
 fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], IdentifyError> {
     debug_assert!(columns <= 4, "{columns} columns of 4");
     let free: Vec<usize> = (0..columns).filter(|column| spring || *column != 1).collect();
     let entries =
         free.iter().flat_map(|&at| rows.iter().filter_map(move |(_, entries)| entries.get(at).copied()));
     let mut design = DMatrix::from_iterator(rows.len(), free.len(), entries);
-    // Columns of size 1, so that the decomposition's cut-off means the same for each.
+    // Columns have norm 1, so that their units do not affect the inversion.
     let sizes: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
     if sizes.iter().any(|size| !size.is_finite() || *size <= 0.0) {
         return Err(IdentifyError::Undetermined);
@@ -92,17 +94,17 @@ fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], Ide
     Ok(found)
 }
 
-/// A record's columns as the windows need them.
+/// Columns of a record in the form that the windows need.
 struct Samples<'a> {
     times: &'a [f64],
-    /// Observed values without their mean, which only the shift would see.
+    /// Observed values minus their mean; only the shift depends on the mean.
     values: Vec<f64>,
     mean: f64,
-    /// Times and values of the input, of rows between the samples too.
+    /// Times and values of the input, including rows between the samples.
     input: Option<Vec<(f64, f64)>>,
-    /// Time derivatives that the sensor has taken already.
+    /// Number of time derivatives that the observed quantity already has.
     order: usize,
-    /// The usual step between samples, in seconds.
+    /// Usual step between samples, in seconds.
     step: f64,
 }
 
@@ -120,11 +122,12 @@ impl<'a> Samples<'a> {
     }
 
     fn duration(&self) -> f64 {
-        // Without samples no time passes.
+        // A record without samples has no duration.
         self.times.first().zip(self.times.last()).map_or(0.0, |(first, last)| last - first)
     }
 
-    /// Period of the strongest line in the values' spectrum, in seconds, between eight samples and half the record.
+    /// Returns the period of the strongest line in the spectrum of the values, in seconds, between eight
+    /// samples and half the record.
     fn period(&self) -> f64 {
         let stride = self.times.len().div_ceil(MOST_SAMPLES).max(1);
         let (longest, shortest) = (self.duration() / 2.0, 8.0 * self.step * stride as f64);
@@ -147,7 +150,8 @@ impl<'a> Samples<'a> {
         best.map_or(longest, |(_, number)| period(number))
     }
 
-    /// The equations of all windows of a width in seconds that hold no gap, each a quarter of a width after the last.
+    /// Returns the equations of all windows of a width in seconds that contain no gap; each window starts a
+    /// quarter of a width after the previous one.
     fn rows(&self, width: f64) -> Vec<Row> {
         let Some(&first) = self.times.first() else { return Vec::new() };
         let count = (4.0 * (self.duration() / width - 1.0)).floor().max(-1.0) as i64 + 1;
@@ -188,7 +192,8 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Each time with its weight in an integral by trapezoids; windows vanish at their ends, where one neighbor is missing.
+/// Returns each time with its weight in the trapezoidal rule. The first and the last time miss one neighbor,
+/// which does no harm: windows vanish at their ends.
 fn trapezoids(times: impl Iterator<Item = f64> + Clone) -> impl Iterator<Item = (f64, f64)> {
     let before = std::iter::once(None).chain(times.clone().map(Some));
     let after = times.clone().skip(1).map(Some).chain([None]);

@@ -1,92 +1,92 @@
-//! Reasons why nothing can be learned.
+//! Errors of learning.
 
 use crate::data::counted;
 use dynamics::DynamicsError;
 use thiserror::Error;
 
-/// Why a data set is refused, or why a learner or model gave no answer.
+/// Reason why a data set is refused, or why a learner or model gave no answer.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LearnError {
-    /// No record at all.
+    /// There is no record.
     #[error("there is no record to learn from; name at least two, or one that is split by time")]
     NoRecords,
-    /// A single record that would have to be split by record.
+    /// A single record cannot be split by record.
     #[error(
         "{record} is the only record, so that none is left to test on; give more records, or split it by time with \
          split = \"time\""
     )]
     OneRecord {
-        /// Its name.
+        /// Name of the record.
         record: String,
     },
-    /// Too few records for three parts.
+    /// There are too few records for three parts.
     #[error(
         "{records} records and test_records = {test}, validation_records = {validation} leave none to train on; lower \
          them, or give more records"
     )]
     NoTraining {
-        /// Records in all.
+        /// Total number of records.
         records: usize,
-        /// Records to test on.
+        /// Number of test records.
         test: usize,
-        /// Records to validate on.
+        /// Number of validation records.
         validation: usize,
     },
-    /// No test part.
+    /// There is no test part.
     #[error("no record is left to test on: what was learned cannot be judged; set test_records to 1 or more")]
     NoTest,
-    /// A column that some records have and others do not.
+    /// Some records have an input and others do not.
     #[error(
         "{without} has no input column, {with} has one; name the column with `input`, or leave out the records of the \
          other kind"
     )]
     MissingInput {
-        /// A record without.
+        /// A record without an input.
         without: String,
-        /// A record with.
+        /// A record with an input.
         with: String,
     },
-    /// A number that is not finite.
+    /// A number is not finite.
     #[error(
         "{record}: {column} is {value} at sample {sample}; mend the file, or drop the row with missing = \"drop\""
     )]
     NotFinite {
-        /// The record.
+        /// Name of the record.
         record: String,
-        /// What the number is.
+        /// Name of the column.
         column: &'static str,
-        /// Which it is.
+        /// The number.
         value: f64,
-        /// Place, counted from 1.
+        /// Sample, counted from 1.
         sample: usize,
     },
-    /// A time that does not come after the one before.
+    /// A time does not come after the previous one.
     #[error(
         "{record}: time {time} s at sample {sample} does not come after {before} s; choose another clock"
     )]
     TimeStands {
-        /// The record.
+        /// Name of the record.
         record: String,
-        /// The time.
+        /// The time, in seconds.
         time: f64,
-        /// Its predecessor.
+        /// The previous time, in seconds.
         before: f64,
-        /// Place, counted from 1.
+        /// Sample, counted from 1.
         sample: usize,
     },
-    /// Columns of different lengths.
+    /// Columns have different lengths.
     #[error("{record}: {times} times, but {found} of {column}; every time needs one")]
     UnequalColumns {
-        /// The record.
+        /// Name of the record.
         record: String,
-        /// The column.
+        /// Name of the column.
         column: &'static str,
-        /// Its length.
+        /// Length of the column.
         found: usize,
         /// Number of times.
         times: usize,
     },
-    /// Records sampled at different rates.
+    /// Records are sampled at different rates.
     #[error(
         "{slow} is sampled at {slow_hz:.4} Hz, {fast} at {fast_hz:.4} Hz; a set needs one rate, within 5 %: give each \
          rate a [problem.NAME] of its own"
@@ -94,106 +94,106 @@ pub enum LearnError {
     MixedRates {
         /// Slowest record.
         slow: String,
-        /// Its rate.
+        /// Sample rate of the slowest record.
         slow_hz: f64,
         /// Fastest record.
         fast: String,
-        /// Its rate.
+        /// Sample rate of the fastest record.
         fast_hz: f64,
     },
-    /// Records in different units.
+    /// Records are in different units.
     #[error(
         "{first} is in {first_unit}, {other} in {other_unit}; a set needs one unit: state it with `unit`"
     )]
     MixedUnits {
-        /// A record.
+        /// Name of one record.
         first: String,
-        /// Its unit.
+        /// Unit of that record.
         first_unit: String,
-        /// Another.
+        /// Name of another record.
         other: String,
-        /// Its unit.
+        /// Unit of the other record.
         other_unit: String,
     },
-    /// A part with too few samples to learn from or to test on.
+    /// A part has too few samples to learn from or to be scored on.
     #[error(
         "{record}: {} are too few for a part of its own; {needed} are needed (three warm-ups of {warm_up_s:.3} s); lower \
          warm_up_s, or take a longer part", counted(*samples, "sample")
     )]
     TooShort {
-        /// The record.
+        /// Name of the record.
         record: String,
-        /// Samples there are.
+        /// Number of samples of the part.
         samples: usize,
-        /// Samples needed.
+        /// Number of samples needed.
         needed: usize,
-        /// Length of a warm-up.
+        /// Length of the warm-up, in seconds.
         warm_up_s: f64,
     },
-    /// A past that a model cannot start from.
+    /// The past is too short for the model.
     #[error(
         "the past is too short: {samples} of the {needed} samples that the model starts from ({needed_s:.3} s); give it \
          more of the record, in `trainer predict` with --past"
     )]
     ShortPast {
-        /// Samples there are, at the model's own interval.
+        /// Number of samples of the past, at the model's own interval.
         samples: usize,
-        /// Samples needed.
+        /// Number of samples needed.
         needed: usize,
-        /// Their length.
+        /// Duration of the needed samples, in seconds.
         needed_s: f64,
     },
-    /// Records of something else than a position.
+    /// A record does not observe a position.
     #[error("{record} observes a {quantity}; models are learned from positions")]
     NoPosition {
-        /// The record.
+        /// Name of the record.
         record: String,
-        /// What it observes.
+        /// Observed quantity.
         quantity: &'static str,
     },
-    /// A motion that never crosses its mean.
+    /// The motion never crosses its mean.
     #[error(
         "no period can be read from the training records: fewer than three crossings of the mean; set period_s"
     )]
     NoPeriod,
-    /// A baseline that needs a simulator.
+    /// A baseline or learner needs a nominal simulator, and there is none.
     #[error("{what} needs a nominal simulator; name one with nominal = \"nominal.toml\"")]
     NoNominal {
-        /// The baseline or learner.
+        /// Name of the baseline or learner.
         what: &'static str,
     },
-    /// A prediction that ran away.
+    /// A prediction diverged.
     #[error("the prediction runs away: |position| passes {bound:.3e} after {time_s:.3} s")]
     Diverged {
-        /// Time since the window's start.
+        /// Time since the start of the run, in seconds.
         time_s: f64,
-        /// The bound.
+        /// Bound that the position exceeded.
         bound: f64,
     },
-    /// A fit without a solution.
+    /// A fit has no solution.
     #[error("{what}: {problem}")]
     Unsolvable {
-        /// The learner or step.
+        /// Name of the learner or step.
         what: &'static str,
-        /// What is wrong and what to do.
+        /// Fault and remedy.
         problem: String,
     },
-    /// A simulator that could not run.
+    /// A simulator could not run.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
-    /// A tensor library that gave no answer.
+    /// The tensor library failed.
     #[error(transparent)]
     Backend(#[from] estimator::FitError),
-    /// A diagnosis that was refused.
+    /// The diagnosis refused the records.
     #[error("diagnosis: {0}")]
     Diagnosis(String),
-    /// A file that holds no model of this program.
+    /// A file holds no model of this program.
     #[error("{problem}; expected a model that `task = \"learn\"` wrote below model/")]
     Stored {
-        /// What is wrong.
+        /// Fault of the file.
         problem: String,
     },
-    /// A request to stop.
+    /// The fit was interrupted by request.
     #[error("interrupted before it was done")]
     Interrupted,
 }

@@ -1,4 +1,4 @@
-//! What inputs do between their samples, where nobody says it.
+//! Estimation of how inputs vary between their samples.
 
 use crate::LearnError;
 use crate::data::{DataSet, Making, Trajectory};
@@ -7,7 +7,8 @@ use crate::learners::weak_sindy::regression;
 use crate::linear::least_squares;
 use dynamics::Hold;
 
-/// Splits and checks records as [`DataSet::new`] does, with the likely behavior of inputs between samples where it is left open.
+/// Checks and splits records as [`DataSet::new`] does, and estimates the interpolation of inputs if
+/// `making.hold` is `None`.
 ///
 /// # Errors
 /// As [`DataSet::new`].
@@ -17,8 +18,11 @@ pub fn data_set(records: &[Trajectory], making: Making) -> Result<DataSet, Learn
     Ok(DataSet { hold: stated.unwrap_or_else(|| likely_hold(&data)), ..data })
 }
 
-/// The behavior of the inputs of the training part with which a law of all terms leaves less in weak form: half a sampling
-/// interval of delay lies between the two, which no term of the law can stand for. [`Hold::Zero`] where there is no input.
+/// Returns the interpolation of the inputs with the smaller weak-form residual of a law of all terms, on the
+/// training part.
+///
+/// The two interpolations differ by a delay of half a sampling interval, which no term of the law can
+/// imitate. [`Hold::Zero`] without an input.
 fn likely_hold(data: &DataSet) -> Hold {
     let left = |hold: Hold| {
         let train = data.train.iter().map(|part| centered(part, hold)).collect::<Option<Vec<_>>>()?;
@@ -32,7 +36,8 @@ fn likely_hold(data: &DataSet) -> Hold {
     }
 }
 
-/// A trajectory whose input at each sample is its mean over the interval about it.
+/// Returns a trajectory whose input at each sample is replaced by its mean over the interval around the
+/// sample; `None` without an input.
 fn centered(part: &Trajectory, hold: Hold) -> Option<Trajectory> {
     let input = part.input()?;
     let before = input.iter().take(1).chain(input);

@@ -1,4 +1,4 @@
-//! What a learner is: a registry line, settings, and a fit.
+//! Learners: registry entry, settings, and fit.
 
 use crate::data::DataSet;
 use crate::{LearnError, Model, Stored};
@@ -8,19 +8,19 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use settings::{Field, Resolved, SettingsError};
 
-/// Form of what is learned.
+/// Kind of learned model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A torque as a function of the state: the model is a differential equation.
+    /// Torque as a function of the state: the model is a differential equation.
     Field,
-    /// From a window of the past and the input to the future.
+    /// Map from a window of the past, and the input, to the future.
     Sequence,
     /// Coefficients of a stated law.
     Regressor,
 }
 
 impl Kind {
-    /// Word for tables.
+    /// Returns the name for tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -34,32 +34,32 @@ impl Kind {
 /// One step of a training, for trace and progress.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// Steps so far.
+    /// Number of steps so far.
     pub step: u64,
-    /// Part of the training, such as `whole records`.
+    /// Phase of the training, such as `whole records`.
     pub phase: String,
-    /// Root mean square residual of the training part, in the position's unit.
+    /// Root mean square residual of the training part, in the unit of the positions.
     pub train: f64,
-    /// Free-run error on the validation part, in the position's unit, where it was looked at.
+    /// Free-run error on the validation part, in the unit of the positions; `None` if it was not computed.
     pub validation: Option<f64>,
 }
 
-/// What a learner is given besides the data.
+/// Everything a learner gets besides the data.
 pub struct Context<'a> {
-    /// Root of its random draws.
+    /// Root seed of the learner's random draws.
     pub seed: Seed,
-    /// Cap on the training steps; `None` leaves them to the learner's settings.
+    /// Upper limit on the training steps; `None` leaves the limit to the learner's settings.
     pub max_steps: Option<u64>,
     /// Request to stop.
     pub cancel: &'a Cancel,
     /// Called after every step.
     pub observe: &'a dyn Fn(&Step),
-    /// Where the state of a training is kept; `None` keeps none.
+    /// Storage for the state of a training; `None` stores nothing.
     pub checkpoints: Option<&'a dyn Checkpoints>,
 }
 
 impl Context<'_> {
-    /// Refuses to go on where somebody asked to stop.
+    /// Returns an error if a stop was requested.
     ///
     /// # Errors
     /// [`LearnError::Interrupted`].
@@ -67,18 +67,18 @@ impl Context<'_> {
         if self.cancel.is_requested() { Err(LearnError::Interrupted) } else { Ok(()) }
     }
 
-    /// The state to begin from, where one was kept.
+    /// Returns the stored state to resume from; `None` if none was stored.
     ///
     /// # Errors
-    /// [`LearnError::Backend`] where it is none of this kind.
+    /// [`LearnError::Backend`] if the stored state is not of this type.
     pub fn resumed<T: DeserializeOwned>(&self) -> Result<Option<T>, LearnError> {
         Ok(self.kept().resumed()?)
     }
 
-    /// Keeps a state where it is time to, or where the training is about to stop on request.
+    /// Stores a state if a checkpoint is due, or if the training is about to stop on request.
     ///
     /// # Errors
-    /// [`LearnError::Backend`] where it cannot be kept.
+    /// [`LearnError::Backend`] if the state cannot be stored.
     pub fn checkpoint<T: Serialize>(&self, step: u64, state: &T) -> Result<(), LearnError> {
         Ok(self.kept().checkpoint(step, || state)?)
     }
@@ -91,48 +91,48 @@ impl Context<'_> {
         }
     }
 
-    /// A budget within the cap.
+    /// Limits a learner's own number of steps to `max_steps`.
     #[must_use]
     pub fn steps(&self, own: u64) -> u64 {
         self.max_steps.map_or(own, |most| own.min(most))
     }
 }
 
-/// A model, and how its training ended.
+/// Fitted model, and how its training ended.
 pub struct Fitted {
-    /// The model.
+    /// Fitted model.
     pub model: Box<dyn Model>,
-    /// How the training ended.
+    /// Reason why the training ended.
     pub reached: Reached,
-    /// Steps taken.
+    /// Number of steps taken.
     pub steps: u64,
 }
 
-/// A learner with its settings.
+/// Learner with its settings.
 pub trait Learner: Send + Sync {
-    /// Learns from the training part, choosing by the validation part; the test part is not looked at.
+    /// Fits a model to the training part and chooses by the validation part; the test part is not used.
     ///
     /// # Errors
-    /// [`LearnError`] with what stands in the way.
+    /// [`LearnError`] with the reason.
     fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError>;
 }
 
-/// A line of the registry.
+/// Entry of a learner in the registry.
 pub struct Entry {
     /// Identifier, as in configurations.
     pub id: &'static str,
-    /// Name in words.
+    /// Name for tables and reports.
     pub title: &'static str,
-    /// One sentence on the method.
+    /// One-sentence description of the method.
     pub summary: &'static str,
-    /// Where it comes from.
+    /// Publication of the method.
     pub reference: &'static str,
-    /// Form of what is learned.
+    /// Kind of learned model.
     pub kind: Kind,
-    /// Keys of its section, `[ID]`.
+    /// Keys of the learner's section, `[ID]`.
     pub fields: &'static [Field],
-    /// Makes it from its section.
+    /// Builds the learner from its section.
     pub build: fn(&Resolved) -> Result<Box<dyn Learner>, SettingsError>,
-    /// Makes its model from a file.
+    /// Restores the learner's model from a file.
     pub restore: fn(&Stored) -> Result<Box<dyn Model>, LearnError>,
 }

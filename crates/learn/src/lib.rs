@@ -1,13 +1,13 @@
-//! Learning the dynamics of an oscillator from records, and judging what was learned on records never seen.
+//! Learning of an oscillator's dynamics from records, and scoring of learned models on unseen records.
 //!
-//! A [`data::DataSet`] holds trajectories split into training, validation and test parts. A [`Learner`] turns it into a
-//! [`Model`], which predicts freely from a stretch of the past and the input, and may state a torque, coefficients with
-//! intervals, and an equation. [`judge`] scores models on the test part beside the [`baselines`]. The learners there are
-//! stand in [`learners::LEARNERS`], one line each.
+//! A [`data::DataSet`] holds trajectories split into training, validation and test parts. A [`Learner`] turns
+//! it into a [`Model`], which predicts freely from a stretch of the past and the input. A model may also
+//! state a torque, coefficients with intervals, and an equation. [`judge`] scores models on the test part,
+//! next to the [`baselines`]. The registry of learners is [`learners::LEARNERS`].
 //!
 //! # Units
-//! SI throughout: seconds; positions in rad or m. Accelerations stand for torques: rad/s² is a torque divided by the
-//! inertia, the only one that motion alone reveals.
+//! SI throughout: seconds; positions in rad or m. Torques are stated as accelerations: rad/s² is a torque
+//! divided by the inertia, because motion alone reveals only this ratio.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -1,8 +1,9 @@
-//! Dense linear algebra on the few matrices of a fit.
+//! Dense linear algebra for the small matrices of a fit.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Solution of a symmetric positive semidefinite system, its diagonal raised by a part of itself until it is definite.
+/// Solves a symmetric positive semidefinite system. Its diagonal is raised by a growing factor until the
+/// matrix is positive definite.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let mut factor = 1e-14;
     while factor < 1e-3 {
@@ -14,7 +15,7 @@ pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVect
     None
 }
 
-/// Inverse of a symmetric positive semidefinite matrix, as [`solve`].
+/// Inverts a symmetric positive semidefinite matrix, regularized as in [`solve`].
 pub(crate) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut factor = 1e-14;
     while factor < 1e-3 {
@@ -26,7 +27,8 @@ pub(crate) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     None
 }
 
-/// A matrix whose diagonal is raised by a part of itself; an empty entry becomes 1.
+/// Returns the matrix with its diagonal multiplied by 1 + `factor`; a diagonal entry that is not positive
+/// becomes 1.
 pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
     let diagonal = matrix.diagonal().map(|own| if own > 0.0 { own * (1.0 + factor) } else { 1.0 });
     let mut raised = matrix.clone();
@@ -34,7 +36,8 @@ pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
     raised
 }
 
-/// Least squares of `rows · x ≈ right` through the normal equations of columns scaled to unit length.
+/// Solves the least-squares problem `rows · x ≈ right` by normal equations, with columns scaled to unit
+/// length.
 pub(crate) fn least_squares(rows: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let lengths: Vec<f64> = rows.column_iter().map(|column| column.norm().max(f64::MIN_POSITIVE)).collect();
     let mut scaled = rows.clone();

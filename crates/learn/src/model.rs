@@ -1,91 +1,91 @@
-//! What a learned model gives.
+//! Models and their predictions.
 
 use crate::{LearnError, Stored};
 use serde::{Deserialize, Serialize};
 
-/// The past that a prediction starts from.
+/// Past that a prediction starts from.
 #[derive(Debug, Clone, Copy)]
 pub struct Past<'a> {
     /// Times in seconds, strictly increasing.
     pub times_s: &'a [f64],
-    /// Observed positions, one for each time.
+    /// Observed positions, one per time.
     pub values: &'a [f64],
-    /// The input at each time, where there is one.
+    /// Input at each time; `None` for a free motion.
     pub input: Option<&'a [f64]>,
 }
 
-/// Times to predict at, all after the past, with the input there.
+/// Times to predict, all after the past, with the input there.
 #[derive(Debug, Clone, Copy)]
 pub struct Ahead<'a> {
     /// Times in seconds, strictly increasing.
     pub times_s: &'a [f64],
-    /// The input at each time, where there is one.
+    /// Input at each time; `None` for a free motion.
     pub input: Option<&'a [f64]>,
 }
 
 /// A prediction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Predicted {
-    /// Positions, one for each time ahead.
+    /// Positions, one per time ahead.
     pub values: Vec<f64>,
-    /// Standard deviations of a measured position about each, where the model states them.
+    /// Standard deviation of a measured position about each predicted one; `None` if the model states none.
     pub std: Option<Vec<f64>>,
 }
 
-/// A point at which a torque acts.
+/// State at which a torque acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// Position.
     pub position: f64,
     /// Velocity.
     pub velocity: f64,
-    /// Direction of the motion, 1 or −1; at rest that in which it would go on.
+    /// Direction of the motion, 1 or −1; at rest, the direction in which it would continue.
     pub direction: f64,
-    /// Input; 0 without one.
+    /// Input; 0 without an input.
     pub input: f64,
 }
 
-/// A torque over the inertia, the acceleration it causes.
+/// Torque divided by the inertia, which is the acceleration it causes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Torque {
     /// Acceleration in rad/s² or m/s².
     pub value: f64,
-    /// Its standard deviation, where the model states one.
+    /// Standard deviation of the acceleration; `None` if the model states none.
     pub std: Option<f64>,
 }
 
-/// A physical coefficient of a learned law.
+/// Physical coefficient of a learned law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
-    /// The term that it multiplies, such as `theta^3`.
+    /// Term that the coefficient multiplies, such as `theta^3`.
     pub name: String,
-    /// Its value: the term's acceleration per unit of the term.
+    /// Value: acceleration per unit of the term.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: String,
-    /// Standard error, where one is stated.
+    /// Standard error; `None` if none is stated.
     pub std_error: Option<f64>,
-    /// Share of the ensemble's members that have the term, where there is an ensemble.
+    /// Share of the ensemble's members that include the term; `None` without an ensemble.
     pub inclusion: Option<f64>,
 }
 
 impl Coefficient {
-    /// 95 % interval, where a standard error is stated.
+    /// Returns the 95 % interval; `None` without a standard error.
     #[must_use]
     pub fn interval_95(&self) -> Option<[f64; 2]> {
         self.std_error.map(|error| [self.value - 1.96 * error, self.value + 1.96 * error])
     }
 }
 
-/// A model of the motion. The same arguments give the same bits.
+/// Model of the motion. The same arguments give the same bits.
 pub trait Model: Send + Sync {
-    /// Predicts from a past without seeing another observation; the past is at least eight samples.
+    /// Predicts from a past without further observations. The past has at least eight samples.
     ///
     /// # Errors
-    /// [`LearnError::Diverged`] where the motion runs away, others where the model cannot run.
+    /// [`LearnError::Diverged`] if the motion diverges, other errors if the model cannot run.
     fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError>;
 
-    /// As [`Self::free_run`], with standard deviations where the model states them.
+    /// Predicts as [`Self::free_run`] does, with standard deviations if the model states them.
     ///
     /// # Errors
     /// As [`Self::free_run`].
@@ -93,25 +93,26 @@ pub trait Model: Send + Sync {
         self.free_run(past, ahead)
     }
 
-    /// Trained numbers.
+    /// Returns the number of trained parameters.
     fn parameters(&self) -> usize;
 
-    /// Coefficients of a law, where the model is one.
+    /// Returns the coefficients of the law; empty if the model states none.
     fn coefficients(&self) -> &[Coefficient] {
         &[]
     }
 
-    /// All torques over the inertia at a point, where they are a function of it.
+    /// Returns the sum of all torques divided by the inertia at a state; `None` if it is not a function of
+    /// the state.
     fn torque(&self, _place: &Place) -> Option<Torque> {
         None
     }
 
-    /// The law as text, where the model is one.
+    /// Returns the law as text; `None` if the model is not an equation.
     fn equation(&self) -> Option<String> {
         None
     }
 
-    /// The model for a file; `None` for a baseline that is not kept.
+    /// Returns the model for storage in a file; `None` for a baseline that is not stored.
     fn stored(&self) -> Option<Stored> {
         None
     }

@@ -7,33 +7,33 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// Key of the header's description.
+/// Key of the description in the header.
 const KEY: &str = "ringdown";
 
-/// Name of the tensor that holds draws of the weights, in files of laws and torques.
+/// Name of the tensor with draws of the weights, in files of laws and torques.
 pub(crate) const DRAWS: &str = "draws";
 
-/// Numbers with a shape, row-major.
+/// Array of numbers with a shape, row-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tensor {
-    /// Name within the file.
+    /// Name of the tensor within the file.
     pub name: String,
     /// Lengths of the axes.
     pub shape: Vec<usize>,
-    /// The numbers.
+    /// The numbers, row-major.
     pub values: Vec<f64>,
 }
 
-/// A model for a file.
+/// Model as stored in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stored {
-    /// The learner that made it.
+    /// Identifier of the learner that made the model.
     pub learner: String,
-    /// All that is no weight, as JSON.
+    /// Everything that is not a weight, as JSON.
     pub description: serde_json::Value,
-    /// What a caller says of the training, as JSON.
+    /// Caller's information about the training, as JSON.
     pub about: serde_json::Value,
-    /// The weights.
+    /// Weights.
     pub tensors: Vec<Tensor>,
 }
 
@@ -49,10 +49,10 @@ fn refused(problem: impl Into<String>) -> LearnError {
 }
 
 impl Stored {
-    /// A model with its description.
+    /// Combines a model's tensors with its description.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] for a description that cannot be written.
+    /// [`LearnError::Stored`] for a description that cannot be written as JSON.
     pub fn new(
         learner: &str,
         description: &impl Serialize,
@@ -63,23 +63,26 @@ impl Stored {
         Ok(Self { learner: learner.to_owned(), description, about, tensors })
     }
 
-    /// The same model with what a caller says of its training.
+    /// Returns the same model with the caller's information about its training.
     #[must_use]
     pub fn about(self, about: serde_json::Value) -> Self {
         Self { about, ..self }
     }
 
-    /// What a caller said of the training, read back.
+    /// Reads the caller's information about the training.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] where it is of another form.
+    /// [`LearnError::Stored`] if it has another form.
     pub fn about_as<T: DeserializeOwned>(&self) -> Result<T, LearnError> {
         serde_json::from_value(self.about.clone())
             .map_err(|error| refused(format!("what it says of its training is of another form: {error}")))
     }
 
-    /// The same model with everything that was learned at zero: weights, and no draws of them. A sequence model is then
-    /// the linear prediction that it corrects, a torque the nominal simulator, and a law without terms uniform motion.
+    /// Returns the same model with everything that was learned set to zero: zero weights, and no draws of
+    /// them.
+    ///
+    /// A sequence model then is the linear prediction that it corrects, a torque is the nominal simulator,
+    /// and a law is uniform motion without any term.
     #[must_use]
     pub fn at_zero(&self) -> Self {
         let zero = |tensor: &Tensor| match tensor.name == DRAWS {
@@ -93,29 +96,29 @@ impl Stored {
         Self { tensors: self.tensors.iter().map(zero).collect(), ..self.clone() }
     }
 
-    /// The description read back.
+    /// Reads the description.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] where it is of another form.
+    /// [`LearnError::Stored`] if it has another form.
     pub fn described<T: DeserializeOwned>(&self) -> Result<T, LearnError> {
         serde_json::from_value(self.description.clone()).map_err(|error| {
             refused(format!("the description of {} is of another form: {error}", self.learner))
         })
     }
 
-    /// The numbers of a tensor.
+    /// Returns the tensor with a name.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] where there is none of this name.
+    /// [`LearnError::Stored`] if there is none with this name.
     pub fn tensor(&self, name: &str) -> Result<&Tensor, LearnError> {
         let found = self.tensors.iter().find(|tensor| tensor.name == name);
         found.ok_or_else(|| refused(format!("there is no tensor `{name}`")))
     }
 
-    /// The file's bytes.
+    /// Serializes the model to the bytes of a file.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] for tensors whose shapes are not those of their numbers.
+    /// [`LearnError::Stored`] for tensors whose shape does not match their number of values.
     pub fn to_bytes(&self) -> Result<Vec<u8>, LearnError> {
         let header = Header {
             learner: self.learner.clone(),
@@ -136,10 +139,10 @@ impl Stored {
             .map_err(|error| refused(error.to_string()))
     }
 
-    /// A model from a file's bytes.
+    /// Reads a model from the bytes of a file.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] where they are something else.
+    /// [`LearnError::Stored`] if the bytes are something else.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LearnError> {
         let not =
             |error: safetensors::SafeTensorError| refused(format!("it is no safetensors file: {error}"));

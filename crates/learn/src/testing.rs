@@ -1,4 +1,5 @@
-//! Simulated data sets for tests, made by the reference integrator, which shares no code with this crate's own.
+//! Simulated data sets for tests, made by the reference integrator, which shares no code with this crate's
+//! integrator.
 
 use crate::data::{DataSet, Making, Split, SplitKind, Trajectory};
 use crate::{Context, Learner};
@@ -15,7 +16,7 @@ pub(crate) fn context() -> Context<'static> {
     Context { seed: Seed::new(1), max_steps: None, cancel: &NEVER, observe: &|_| (), checkpoints: None }
 }
 
-/// Friction and a weight on a spring, swinging freely: θ̈ = −16·θ − 0.12·θ̇ − 0.15·sign θ̇ − 24·sin θ.
+/// Dry friction and gravity on a spring, swinging freely: θ̈ = −16·θ − 0.12·θ̇ − 0.15·sign θ̇ − 24·sin θ.
 pub(crate) fn friction_and_gravity() -> System {
     let effects = vec![
         Active::new("coulomb_friction", &[0.15]).unwrap(),
@@ -24,7 +25,7 @@ pub(crate) fn friction_and_gravity() -> System {
     System::new(Nominal::new(1.0, 0.12, 16.0, 0.0).unwrap(), effects).unwrap()
 }
 
-/// Drag and a stiffening spring, driven: θ̈ = −40·θ − 0.3·θ̇ − 0.2·θ̇|θ̇| − 30·θ³ + u.
+/// Drag and a hardening spring, driven: θ̈ = −40·θ − 0.3·θ̇ − 0.2·θ̇|θ̇| − 30·θ³ + u.
 pub(crate) fn drag_and_cubic() -> System {
     let effects = vec![
         Active::new("quadratic_drag", &[0.2]).unwrap(),
@@ -33,12 +34,12 @@ pub(crate) fn drag_and_cubic() -> System {
     System::new(Nominal::new(1.0, 0.3, 40.0, 0.0).unwrap(), effects).unwrap()
 }
 
-/// A record of 10 s at 50 Hz with noise.
+/// Simulates a record of 10 s at 50 Hz with noise.
 pub(crate) fn record(system: &System, number: usize, driven: bool, noise: f64) -> Trajectory {
     record_held(system, number, driven.then_some(Hold::Zero), noise)
 }
 
-/// The same whose input, where it has one, is held or goes straight on.
+/// Simulates such a record; an input is held or interpolated linearly between samples.
 pub(crate) fn record_held(system: &System, number: usize, hold: Option<Hold>, noise: f64) -> Trajectory {
     let times: Vec<f64> = (0..500).map(|at| f64::from(at) * 0.02).collect();
     let force = |time: f64| {
@@ -74,13 +75,13 @@ pub(crate) fn making(nominal: Option<NominalSimulator>) -> Making {
     }
 }
 
-/// Six records of a system, its oscillator known, its effects not.
+/// Makes six records of a system whose nominal oscillator is known and whose effects are not.
 pub(crate) fn data_set(system: &System, driven: bool, noise: f64) -> DataSet {
     let records: Vec<Trajectory> = (0..6).map(|number| record(system, number, driven, noise)).collect();
     DataSet::new(&records, making(Some(NominalSimulator::from(system.nominal())))).unwrap()
 }
 
-/// A learner with its default settings but for overrides, `key=value`.
+/// Builds a learner with its default settings, except for overrides `key=value`.
 pub(crate) fn learner(id: &str, overrides: &[&str]) -> Box<dyn Learner> {
     let entry = crate::learners::find(id).unwrap();
     let mut document = Document::default();

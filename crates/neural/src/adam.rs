@@ -1,19 +1,20 @@
-//! Adam: steps along a running mean of the gradient, each parameter scaled by its own gradient's size.
+//! Adam: steps along a running mean of the gradient, with each parameter scaled by the size of its own
+//! gradient.
 //!
-//! For losses that are drawn anew at every step; where the loss is a function,
-//! [`Lbfgs`](crate::Lbfgs) needs far fewer of them.
+//! Suited to losses that are drawn anew at every step. For a deterministic loss, [`Lbfgs`](crate::Lbfgs)
+//! needs far fewer steps.
 //!
 //! Reference: Kingma, Ba, Adam: a method for stochastic optimization, ICLR 2015, algorithm 1.
 
 use serde::{Deserialize, Serialize};
 
-/// Share of the mean gradient that a step keeps, and of the mean square: the paper's.
+/// Decay rates of the mean gradient and of the mean squared gradient, as in the paper.
 const KEPT: f64 = 0.9;
 const KEPT_SQUARE: f64 = 0.999;
-/// Keeps a parameter without a gradient from dividing by nothing.
+/// Term that prevents division by zero for a parameter without a gradient.
 const FLOOR: f64 = 1e-8;
 
-/// The method's state: mean gradient and mean squared gradient of every parameter.
+/// State of the method: mean gradient and mean squared gradient of every parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Adam {
     means: Vec<f64>,
@@ -22,24 +23,24 @@ pub struct Adam {
 }
 
 impl Adam {
-    /// The state before the first step, for a number of parameters.
+    /// Returns the state before the first step, for a number of parameters.
     #[must_use]
     pub fn new(parameters: usize) -> Self {
         Self { means: vec![0.0; parameters], squares: vec![0.0; parameters], steps: 0 }
     }
 
-    /// Whether this is the state after a number of steps on a number of parameters.
+    /// Returns `true` if this is the state after `steps` steps on a number of parameters.
     #[must_use]
     pub fn has_taken(&self, steps: u64, parameters: usize) -> bool {
         u64::try_from(self.steps) == Ok(steps)
             && [&self.means, &self.squares].iter().all(|of| of.len() == parameters)
     }
 
-    /// Moves the parameters by a step; `rate` is about the distance a parameter goes. `parameters` and
-    /// `gradient` are as long as the state; what is longer is left alone.
+    /// Moves the parameters by one step; `rate` is about the distance that each parameter moves. `parameters`
+    /// and `gradient` are as long as the state; extra entries are left unchanged.
     pub fn step(&mut self, parameters: &mut [f64], gradient: &[f64], rate: f64) {
         self.steps = self.steps.saturating_add(1);
-        // The means begin at zero; this takes that out of them.
+        // The means start at zero; this removes the resulting bias.
         let (seen, seen_square) = (1.0 - KEPT.powi(self.steps), 1.0 - KEPT_SQUARE.powi(self.steps));
         let state = self.means.iter_mut().zip(&mut self.squares);
         for ((parameter, slope), (mean, square)) in parameters.iter_mut().zip(gradient).zip(state) {
@@ -54,7 +55,7 @@ impl Adam {
 mod tests {
     use super::Adam;
 
-    /// Two steps by hand on gradients 2 and −1.
+    /// Two steps computed by hand, for gradients 2 and −1.
     #[test]
     fn it_is_the_published_algorithm() {
         let (mut adam, mut x) = (Adam::new(1), [1.0]);

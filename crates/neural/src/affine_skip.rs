@@ -1,4 +1,4 @@
-//! A network with an affine skip: f(t) = a + b·t + net(t), with exact Jacobians.
+//! Network with an affine skip connection: f(t) = a + b·t + net(t), with exact Jacobians.
 
 use crate::device::{tensor, values};
 use crate::weights::NamedTensor;
@@ -10,12 +10,13 @@ use nalgebra::DMatrix;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// f(t) = a + b·t + net(t), `net` a perceptron with tanh between its layers, t and f scalar.
+/// Network f(t) = a + b·t + net(t), where `net` is a perceptron with tanh between its layers, and t and f are
+/// scalar.
 ///
-/// The skip carries what is a line; the network learns what is not. At a stationary point of a squared
-/// loss its residuals are orthogonal to 1 and to t.
+/// The skip connection carries the linear part; the network learns the rest. At a stationary point of a
+/// squared loss, the residuals are orthogonal to 1 and to t.
 ///
-/// Parameters in a flat list: for each layer the weights by input, then the biases; then a; then b.
+/// Order of the flat parameter list: for each layer the weights by input, then the biases; then a; then b.
 #[derive(Module, Debug)]
 pub struct AffineSkipNetwork {
     layers: Vec<Linear>,
@@ -26,13 +27,13 @@ pub struct AffineSkipNetwork {
 /// Values and their derivatives with respect to the parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearization {
-    /// One value for each point.
+    /// Values, one per point.
     pub values: Vec<f64>,
-    /// Points by parameters.
+    /// Jacobian, points × parameters.
     pub jacobian: DMatrix<f64>,
 }
 
-/// Sizes of a layer.
+/// Size of a layer.
 #[derive(Debug, Clone, Copy)]
 struct Size {
     inputs: usize,
@@ -46,14 +47,14 @@ fn sizes(hidden: &[usize]) -> Vec<Size> {
 }
 
 impl AffineSkipNetwork {
-    /// Number of parameters of a network with the given hidden widths.
+    /// Returns the number of parameters of a network with the given hidden widths.
     #[must_use]
     pub fn parameter_count(hidden: &[usize]) -> usize {
         sizes(hidden).iter().map(|size| (size.inputs + 1) * size.outputs).sum::<usize>() + 2
     }
 
-    /// Start values drawn from a generator: weights normal with variance 2/(inputs + outputs) (Glorot,
-    /// Bengio, AISTATS 2010), biases, a and b normal; all times `scale`.
+    /// Draws initial values from a generator: weights normal with variance 2/(inputs + outputs) (Glorot,
+    /// Bengio, AISTATS 2010), biases, a and b standard normal; all multiplied by `scale`.
     #[must_use]
     pub fn draw_parameters(hidden: &[usize], scale: f64, generator: &mut impl Rng) -> Vec<f64> {
         let mut normal = || -> f64 { scale * Distribution::<f64>::sample(&StandardNormal, generator) };
@@ -67,11 +68,10 @@ impl AffineSkipNetwork {
         parameters
     }
 
-    /// The network with given hidden widths and parameters.
+    /// Builds a network with given hidden widths and parameters.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where the number of parameters is not
-    /// [`parameter_count`](Self::parameter_count).
+    /// [`FitError::Backend`] if the number of parameters is not [`parameter_count`](Self::parameter_count).
     pub fn from_parameters(hidden: &[usize], parameters: &[f64], device: &Device) -> Result<Self, FitError> {
         let expected = Self::parameter_count(hidden);
         let wrong_count = || FitError::Backend {
@@ -99,7 +99,7 @@ impl AffineSkipNetwork {
         if parameters.len() == expected { Ok(Self { layers, intercept, slope }) } else { Err(wrong_count()) }
     }
 
-    /// Values at the points `t`, of shape points × 1.
+    /// Returns the values at the points `t`, of shape points × 1.
     #[must_use]
     pub fn forward(&self, t: &Tensor<2>) -> Tensor<2> {
         let mut hidden = t.clone();
@@ -112,35 +112,37 @@ impl AffineSkipNetwork {
         hidden + self.skip(t)
     }
 
-    /// Values at the points `t`, of shape points × 1, and their derivatives with respect to t, carried
-    /// forward through the layers as pairs: d(x·W + c) = dx·W, d tanh(p) = (1 − tanh²(p))·dp.
+    /// Returns the values at the points `t`, of shape points × 1, and their derivatives with respect to t.
+    ///
+    /// The derivatives are carried forward through the layers with the values: d(x·W + c) = dx·W, d tanh(p) =
+    /// (1 − tanh²(p))·dp.
     #[must_use]
     pub fn forward_with_derivative(&self, t: &Tensor<2>) -> (Tensor<2>, Tensor<2>) {
         let (value, derivative, _) = self.pass(t, false);
         (value, derivative)
     }
 
-    /// Values at the points `t` with their exact derivatives with respect to every parameter.
+    /// Returns the values at the points `t` with their exact derivatives with respect to every parameter.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where burn gives no gradient.
+    /// [`FitError::Backend`] if burn gives no gradient.
     pub fn linearize_values(&self, t: &[f64], device: &Device) -> Result<Linearization, FitError> {
         self.linearize(t, device, Of::Value)
     }
 
-    /// Derivatives with respect to t at the points `t`, with *their* exact derivatives with respect to
-    /// every parameter.
+    /// Returns the derivatives with respect to t at the points `t`, with *their* exact derivatives with
+    /// respect to every parameter.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where burn gives no gradient.
+    /// [`FitError::Backend`] if burn gives no gradient.
     pub fn linearize_derivatives(&self, t: &[f64], device: &Device) -> Result<Linearization, FitError> {
         self.linearize(t, device, Of::Derivative)
     }
 
-    /// The weights by name, for a file.
+    /// Returns the weights by name, for a file.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where a tensor does not hold doubles.
+    /// [`FitError::Backend`] if a tensor does not hold doubles.
     pub fn named_tensors(&self) -> Result<Vec<NamedTensor>, FitError> {
         let mut tensors = Vec::new();
         for (at, layer) in self.layers.iter().enumerate() {
@@ -173,7 +175,7 @@ impl AffineSkipNetwork {
         t.clone() * self.slope.val().unsqueeze() + self.intercept.val().unsqueeze()
     }
 
-    /// Forward pass of (value, derivative) pairs, with a tap at every layer where asked for.
+    /// Runs the forward pass of (value, derivative) pairs, with a tap at every layer if requested.
     fn pass(&self, t: &Tensor<2>, tapped: bool) -> (Tensor<2>, Tensor<2>, Vec<Tap>) {
         let points = t.dims()[0];
         let mut value = t.clone();
@@ -207,12 +209,12 @@ impl AffineSkipNetwork {
         (value + self.skip(t), derivative + slope, taps)
     }
 
-    /// One backward pass for all rows of the Jacobian.
+    /// Computes all rows of the Jacobian in one backward pass.
     ///
-    /// A zero is added to every layer's sums, point by point: the tap. The points do not interact, so
-    /// the gradient of the *sum* of all outputs with respect to a tap holds, at each point, that point's
-    /// own derivative with respect to its sums; times the layer's input it is the point's derivative
-    /// with respect to the weights.
+    /// A zero, the tap, is added to every layer's pre-activations, point by point. The points do not
+    /// interact, so the gradient of the *sum* of all outputs with respect to a tap contains each point's own
+    /// derivative with respect to its pre-activations. Multiplied by the layer's input, this is the point's
+    /// derivative with respect to the weights.
     fn linearize(&self, t: &[f64], device: &Device, of: Of) -> Result<Linearization, FitError> {
         let recording = device.clone().autodiff();
         let network = self.clone().fork(&recording);
@@ -233,7 +235,7 @@ impl AffineSkipNetwork {
                     let [rows, columns] = gradient.dims();
                     Ok(DMatrix::from_row_slice(rows, columns, &values(gradient)?))
                 }
-                // A value does not depend on the derivatives carried beside it.
+                // A value does not depend on the derivative carried beside it.
                 None => {
                     let [rows, columns] = tap.dims();
                     Ok(DMatrix::zeros(rows, columns))
@@ -260,14 +262,14 @@ impl AffineSkipNetwork {
     }
 }
 
-/// What is linearized.
+/// Quantity that is linearized.
 #[derive(Debug, Clone, Copy)]
 enum Of {
     Value,
     Derivative,
 }
 
-/// A layer's inputs, and the zeros added to its sums.
+/// Inputs of a layer, and the zeros added to its pre-activations.
 struct Tap {
     input: Tensor<2>,
     input_derivative: Tensor<2>,

@@ -1,8 +1,8 @@
-//! Encoders that read an envelope, and the exponential decay that decodes what they say.
+//! Encoders that read an envelope, and the exponential decay that decodes their output.
 //!
-//! A network reads the peaks as a sequence and says two numbers, the level and the decay rate. The
-//! decoder is physics: ln A(t) = ln A₀ − λt. The loss is the mean squared error of the peaks
-//! reconstructed in this way; the network never sees a rate, only how well its own rate reconstructs.
+//! A network reads the peaks as a sequence and outputs two numbers, the level and the decay rate. The decoder
+//! is physics: ln A(t) = ln A₀ − λt. The loss is the mean squared error of the peaks reconstructed in this
+//! way. The network never sees a true rate; it sees only how well its own rate reconstructs the peaks.
 
 use crate::device::{tensor, values};
 use crate::flat::{flat_gradient, named_parameters, with_parameters};
@@ -20,22 +20,23 @@ use nalgebra::DVector;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-/// A network that reads a sequence and says (c, r): the level of z in the middle of the record and the
-/// decay rate, so that z(s) ≈ c − r·s.
+/// Network that reads a sequence and outputs (c, r): the level of z in the middle of the record and the decay
+/// rate, so that z(s) ≈ c − r·s.
 pub trait Encoder: Module {
-    /// The network's input, of shape sequences × entries × features. The sequences are of one length.
+    /// Returns the network's input, of shape sequences × entries × features. All sequences have the same
+    /// length.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3>;
 
-    /// (c, r) of every sequence: sequences × 2 of sequences × entries × features.
+    /// Returns (c, r) of every sequence: maps sequences × entries × features to sequences × 2.
     fn encode(&self, input: Tensor<3>) -> Tensor<2>;
 
-    /// What the network says, the loss of it, and the loss's gradient: by burn's tape, unless the
-    /// network knows a shorter way.
+    /// Returns the network's output, its loss, and the loss's gradient: by burn's tape, unless the network
+    /// overrides this with a faster method.
     ///
-    /// `self`, `input` and what `loss` computes with are on a recording device.
+    /// `self`, `input` and the tensors used by `loss` are on a recording device.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where burn gives no gradient.
+    /// [`FitError::Backend`] if burn gives no gradient.
     fn differentiate(
         &self,
         input: Tensor<3>,
@@ -48,42 +49,43 @@ pub trait Encoder: Module {
     }
 }
 
-/// What [`Encoder::differentiate`] gives.
+/// Result of [`Encoder::differentiate`].
 #[derive(Debug, Clone)]
 pub struct Differentiated {
-    /// What the network says, sequences × 2.
+    /// Output of the network, sequences × 2.
     pub said: Tensor<2>,
-    /// The loss of it.
+    /// Loss of the output.
     pub loss: Tensor<1>,
-    /// The loss's derivatives with respect to the network's parameters, in the order of the flat list.
+    /// Derivatives of the loss with respect to the network's parameters, in the order of the flat list.
     pub gradient: Vec<f64>,
 }
 
-/// What a fit by reconstruction needs besides the encoder.
+/// Options of a fit by reconstruction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reconstruction {
-    /// Most entries the encoder reads; longer envelopes are [pooled](Sequence::pooled) for it. The loss
-    /// is over all peaks.
+    /// Largest number of entries that the encoder reads; longer envelopes are [pooled](Sequence::pooled) for
+    /// it. The loss always covers all peaks.
     pub longest_sequence: usize,
-    /// Most steps of the optimizer.
+    /// Largest number of optimizer steps.
     pub max_steps: u64,
-    /// Curvature pairs the optimizer remembers.
+    /// Number of curvature pairs that the optimizer stores.
     pub memory: usize,
-    /// Converged when the gradient has fallen to this share of its length at the start.
+    /// Gradient norm at convergence, relative to the initial norm.
     pub gradient_tolerance: f64,
 }
 
 impl Reconstruction {
-    /// Trains an encoder from start values on an envelope, and reads the estimate from its decoder.
+    /// Trains an encoder from initial values on an envelope, and takes the estimate from its decoder.
     ///
     /// The uncertainty is that of a decoder with two outputs: the Laplace approximation in (c, r), whose
-    /// precision is the curvature of the loss there, with the residual variance over peaks − 2.
+    /// precision is the curvature of the loss there, with the residual variance for peaks − 2 degrees of
+    /// freedom.
     ///
     /// Reference: MacKay, Neural Computation 4 (1992) 448, for the two outputs instead of the weights.
     ///
     /// # Errors
-    /// [`FitError::NoSpread`] for an envelope without spread, [`FitError::NotFinite`] where the loss
-    /// is not finite from the start, [`FitError::Backend`] where burn refuses.
+    /// [`FitError::NoSpread`] for an envelope without spread, [`FitError::NotFinite`] if the loss is not
+    /// finite at the start, [`FitError::Backend`] if burn fails.
     pub fn fit<E: Encoder>(
         &self,
         envelope: &Envelope,
@@ -98,7 +100,7 @@ impl Reconstruction {
         let sequence = peaks.clone().pooled(self.longest_sequence).as_read(context);
         let objective = Objective::new(encoder, &sequence, &peaks, &recording);
         let (start, most) = match context.is_at_zero() {
-            // Held there: nothing is trained.
+            // Held at zero: nothing is trained.
             true => (vec![0.0; start.len()], 0),
             false => (start, self.max_steps),
         };
@@ -127,7 +129,7 @@ impl Reconstruction {
         let fitted = |s: f64| scaling.log_amplitude(code.level - code.rate * s);
         let trained = with_parameters(encoder.clone(), minimum.parameters.as_slice(), device)?;
         let knowledge = match stop.reached {
-            // Away from the minimum the loss has no such shape.
+            // Away from the minimum, the loss is not quadratic and the approximation does not apply.
             Reached::Converged => code.knowledge(&peaks),
             _ => None,
         };
@@ -158,7 +160,7 @@ impl Reconstruction {
     }
 }
 
-/// What an encoder says: z(s) ≈ level − rate·s.
+/// Output of an encoder: z(s) ≈ level − rate·s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Code {
     level: f64,
@@ -178,7 +180,7 @@ impl Code {
         pairs.map(|(s, z)| (*s, self.level - self.rate * s - z))
     }
 
-    /// The loss's larger derivative with respect to level and rate.
+    /// Returns the larger of the loss's absolute derivatives with respect to level and rate.
     fn slope(&self, peaks: &Sequence) -> f64 {
         let (by_level, by_rate) = self.residuals(peaks).fold((0.0, 0.0), |(one, other), (s, residual)| {
             (one + 2.0 * residual, other - 2.0 * residual * s)
@@ -186,7 +188,8 @@ impl Code {
         f64::max(f64::abs(by_level), f64::abs(by_rate)) / peaks.len() as f64
     }
 
-    /// What is known of the code at the loss's minimum; `None` where the peaks leave no scatter to go by.
+    /// Returns the Laplace approximation at the minimum of the loss; `None` if the peaks leave no scatter to
+    /// estimate.
     fn knowledge(&self, peaks: &Sequence) -> Option<Knowledge> {
         let count = peaks.len() as f64;
         let degrees_of_freedom = count - 2.0;
@@ -199,8 +202,8 @@ impl Code {
     }
 }
 
-/// The Laplace approximation in (level, rate): the loss's curvature Σ (1, −s)ᵀ(1, −s), inverted, times the
-/// residual variance.
+/// Laplace approximation in (level, rate): the inverse of the loss's curvature Σ (1, −s)ᵀ(1, −s), multiplied
+/// by the residual variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Knowledge {
     /// Variance of a peak's z about the decoder's line.
@@ -219,21 +222,22 @@ impl Knowledge {
         (self.variance / self.curvature).sqrt()
     }
 
-    /// Standard deviation of a measured z at s about the line: its own scatter and the line's.
+    /// Returns the standard deviation of a measured z at s about the line: its own scatter and the error of
+    /// the line.
     fn prediction_std_error(&self, s: f64) -> f64 {
         (self.variance * (1.0 + 1.0 / self.count + (s - self.middle).powi(2) / self.curvature)).sqrt()
     }
 }
 
-/// mean over the peaks of (c − r·s − z)², (c, r) the encoder's.
+/// Objective: the mean over the peaks of (c − r·s − z)², where (c, r) is the encoder's output.
 struct Objective<'a, E> {
     encoder: &'a E,
     recording: &'a Device,
     input: Tensor<3>,
-    /// Rows 1 and −s: the decoder is a product with it.
+    /// Rows 1 and −s: decoding is a matrix product with it.
     decoder: Tensor<2>,
     targets: Tensor<2>,
-    /// The last parameters evaluated and what the encoder said.
+    /// Last parameters evaluated, and the encoder's output for them.
     last: RefCell<Option<(DVector<f64>, Code)>>,
 }
 
@@ -251,7 +255,7 @@ impl<'a, E: Encoder> Objective<'a, E> {
         }
     }
 
-    /// What the encoder says with these parameters.
+    /// Returns the encoder's output for these parameters.
     fn code(&self, parameters: &DVector<f64>) -> Result<Code, FitError> {
         if let Some((_, code)) = self.last.borrow().as_ref().filter(|(last, _)| last == parameters) {
             return Ok(*code);
@@ -276,7 +280,7 @@ impl<E: Encoder> Smooth for Objective<'_, E> {
     }
 }
 
-/// A slope of the loss in the decoder's two numbers below which rounding may have the last word.
+/// Derivative of the loss in the decoder's two numbers below which rounding errors may dominate.
 const SLOPE_OF_ROUNDING: f64 = 1e-8;
 
 fn stop(minimum: &Minimum, slope: f64) -> Stop {
@@ -361,7 +365,7 @@ mod tests {
         }
     }
 
-    /// Says the mean of what it reads, times two weights.
+    /// Encoder that returns the mean of its input, multiplied by two weights.
     #[derive(Module, Debug)]
     struct Mean {
         head: Linear,

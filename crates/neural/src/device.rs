@@ -1,5 +1,5 @@
-//! Devices that networks compute on: burn's CPU backend in double precision, and what the program was built with
-//! besides.
+//! Devices for the networks' computations: burn's CPU backend, in double precision by default, and the GPU
+//! backends that the program was built with.
 
 #![expect(clippy::disallowed_methods, reason = "this module hands out the device")]
 
@@ -8,21 +8,21 @@ use estimator::FitError;
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// A kind of device.
+/// Kind of device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DeviceKind {
-    /// The processor; always there.
+    /// CPU; always available.
     #[default]
     Cpu,
-    /// A graphics card by way of WebGPU; with the cargo feature `wgpu`.
+    /// GPU by way of WebGPU; needs the cargo feature `wgpu`.
     Wgpu,
-    /// An NVIDIA card; with the cargo feature `cuda`.
+    /// NVIDIA GPU; needs the cargo feature `cuda`.
     Cuda,
 }
 
 impl DeviceKind {
-    /// The name as configurations write it.
+    /// Returns the name used in configurations.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -32,7 +32,7 @@ impl DeviceKind {
         }
     }
 
-    /// Whether the program was built with it.
+    /// Returns `true` if the program was built with this kind.
     #[must_use]
     pub const fn is_built(self) -> bool {
         match self {
@@ -42,7 +42,7 @@ impl DeviceKind {
         }
     }
 
-    /// The names of all that the program was built with, for a message.
+    /// Returns the names of all kinds that the program was built with, for a message.
     #[must_use]
     pub fn all_built() -> String {
         let built = [Self::Cpu, Self::Wgpu, Self::Cuda].into_iter().filter(|kind| kind.is_built());
@@ -50,11 +50,11 @@ impl DeviceKind {
     }
 }
 
-/// Width of the numbers that a network computes with.
+/// Floating-point precision of a network's computations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
-    /// Doubles.
+    /// Double precision.
     #[default]
     F64,
     /// Single precision.
@@ -62,7 +62,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// The name as configurations write it.
+    /// Returns the name used in configurations.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -86,40 +86,41 @@ impl Precision {
     }
 }
 
-/// A device with the precision that this process has set it to.
+/// Device, and the precision to which this process has set it.
 type Set = OnceLock<Result<(Device, Precision), String>>;
 
 static CPU: Set = OnceLock::new();
 static WGPU: Set = OnceLock::new();
 static CUDA: Set = OnceLock::new();
 
-/// burn's CPU device, set to double precision.
+/// Returns burn's CPU device, set to double precision.
 ///
-/// The setting holds for the whole process and can be made once only, before the first tensor; hence
-/// every tensor of this workspace has to come by way of this module.
+/// The setting holds for the whole process and can be made only once, before the first tensor. Therefore,
+/// every tensor of this workspace must be made through this module.
 ///
 /// # Errors
-/// [`FitError::Backend`] where burn refuses the setting, or this process has set the CPU to single precision.
+/// [`FitError::Backend`] if burn refuses the setting, or if this process has set the CPU to single precision.
 pub fn device() -> Result<Device, FitError> {
     device_of(DeviceKind::Cpu, Precision::F64)
 }
 
-/// burn's CPU device in the precision that this process has set it to, double where nobody has asked for any: what a
-/// trained network predicts on.
+/// Returns burn's CPU device in the precision to which this process has set it, by default double: the device
+/// on which a trained network predicts.
 ///
 /// # Errors
-/// [`FitError::Backend`] where burn refuses the setting.
+/// [`FitError::Backend`] if burn refuses the setting.
 pub fn cpu_as_set() -> Result<Device, FitError> {
     let precision = CPU.get().and_then(|set| set.as_ref().ok()).map(|(_, precision)| *precision);
-    // Nobody has asked yet.
+    // Double precision if the process has not set any yet.
     device_of(DeviceKind::Cpu, precision.unwrap_or_default())
 }
 
-/// A device of a kind in a precision; the first of its kind where there are several.
+/// Returns a device of a kind in a precision; the first one if there are several.
 ///
 /// # Errors
-/// [`FitError::Backend`] where the program was built without this kind, the machine has no such device, the device does not
-/// compute in this precision, or this process has set it to the other one; the message says what there is.
+/// [`FitError::Backend`] if the program was built without this kind, the machine has no such device, the
+/// device does not support this precision, or this process has set it to the other one. The message states
+/// what is available.
 pub fn device_of(kind: DeviceKind, precision: Precision) -> Result<Device, FitError> {
     let refused = |problem: String| FitError::Backend { problem };
     let set = match kind {
@@ -164,7 +165,8 @@ fn configured(kind: DeviceKind, precision: Precision) -> Result<(Device, Precisi
     Ok((device, precision))
 }
 
-/// The first device of a kind; listing them starts none, so that a machine without one is told and does not panic.
+/// Returns the first device of a kind. Listing devices starts none, so a machine without one gets an error
+/// message instead of a panic.
 fn first(kind: DeviceKind) -> Option<Device> {
     match kind {
         DeviceKind::Cpu => Some(Device::flex()),
@@ -177,18 +179,18 @@ fn first(kind: DeviceKind) -> Option<Device> {
     }
 }
 
-/// A matrix of doubles on a device, from its rows one after the other.
+/// Makes a matrix of doubles on a device from its values, row by row.
 ///
-/// By way of `TensorData`, which keeps every digit; burn's literals go through single precision.
+/// It goes through `TensorData`, which keeps every digit; burn's literals go through single precision.
 #[must_use]
 pub fn tensor(values: Vec<f64>, [rows, columns]: [usize; 2], device: &Device) -> Tensor<2> {
     Tensor::from_data(TensorData::new(values, [rows, columns]), device)
 }
 
-/// The numbers of a tensor, rows one after the other; those of a tensor in single precision as doubles.
+/// Returns the values of a tensor, row by row, as doubles.
 ///
 /// # Errors
-/// [`FitError::Backend`] where the tensor does not hold floating-point numbers.
+/// [`FitError::Backend`] if the tensor does not hold floating-point numbers.
 pub fn values<const D: usize>(tensor: Tensor<D>) -> Result<Vec<f64>, FitError> {
     let data = tensor.into_data();
     let data = if data.dtype() == DType::F32 { data.convert::<f64>() } else { data };

@@ -1,7 +1,7 @@
-//! Any burn module's parameters as one flat list, for optimizers that know vectors only.
+//! Parameters of any burn module as one flat list, for optimizers that work on vectors.
 //!
-//! The order is that of the module's fields, tensors with their last axis fastest. A module made with
-//! zeros for start values and then filled from here never asks burn's global generator.
+//! The order is that of the module's fields; within a tensor, the last axis varies fastest. A module built
+//! with zeros and then filled from such a list never uses burn's global random generator.
 
 use crate::device::values;
 use crate::weights::NamedTensor;
@@ -9,10 +9,10 @@ use burn::module::{Module, ModuleMapper, ModuleVisitor, Param};
 use burn::tensor::{Device, Gradients, Tensor, TensorData};
 use estimator::FitError;
 
-/// A module's parameters by name, such as `encoder.layers.0.norm_1.gamma`.
+/// Returns a module's parameters by name, such as `encoder.layers.0.norm_1.gamma`.
 ///
 /// # Errors
-/// [`FitError::Backend`] where a parameter does not hold doubles.
+/// [`FitError::Backend`] if a parameter does not hold doubles.
 pub fn named_parameters(module: &impl Module) -> Result<Vec<NamedTensor>, FitError> {
     struct Names {
         path: Vec<String>,
@@ -40,11 +40,11 @@ pub fn named_parameters(module: &impl Module) -> Result<Vec<NamedTensor>, FitErr
     names.found
 }
 
-/// The module with its parameters taken from a flat list, on a device; on a recording device they ask
-/// for their gradients.
+/// Returns the module on a device, with its parameters taken from a flat list. On a recording device, the
+/// parameters require gradients.
 ///
 /// # Errors
-/// [`FitError::Backend`] where the list is longer or shorter than the module's parameters.
+/// [`FitError::Backend`] if the list is longer or shorter than the module's parameters.
 pub fn with_parameters<M: Module>(module: M, parameters: &[f64], device: &Device) -> Result<M, FitError> {
     struct Fill<'a> {
         rest: &'a [f64],
@@ -77,11 +77,11 @@ pub fn with_parameters<M: Module>(module: M, parameters: &[f64], device: &Device
     Ok(module)
 }
 
-/// The gradients of a module's parameters in the order of the flat list; 0 for a parameter that the
+/// Returns the gradients of a module's parameters in the order of the flat list; 0 for a parameter that the
 /// result does not depend on.
 ///
 /// # Errors
-/// [`FitError::Backend`] where a gradient does not hold doubles.
+/// [`FitError::Backend`] if a gradient does not hold doubles.
 pub fn flat_gradient(module: &impl Module, gradients: &Gradients) -> Result<Vec<f64>, FitError> {
     struct Collect<'a> {
         gradients: &'a Gradients,
@@ -167,9 +167,10 @@ mod tests {
         let sum = module.layers[0].forward(tensor(vec![2.0, 5.0], [1, 2], &recording)).sum();
         let gradient = flat_gradient(&module, &sum.backward()).unwrap();
         assert_eq!(gradient[..9], [2.0, 2.0, 2.0, 5.0, 5.0, 5.0, 1.0, 1.0, 1.0]);
-        // The other parameters are not in it.
+        // f does not depend on the other parameters.
         assert_eq!(gradient[9..], [0.0; 10]);
-        // 2·0.1 stands for the first three weights' part, and so on: 5·(0.3 + 0.4 + 0.5) and the biases.
+        // 2·(0.0 + 0.1 + 0.2) from the first three weights, 5·(0.3 + 0.4 + 0.5) from the next three, and the
+        // biases.
         let expected = 2.0 * (0.0 + 0.1 + 0.2) + 5.0 * (0.3 + 0.4 + 0.5) + (0.6 + 0.7 + 0.8);
         assert!((values(sum).unwrap()[0] - expected).abs() < 1e-13);
     }

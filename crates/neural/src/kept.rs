@@ -1,14 +1,15 @@
-//! A place for states in memory, for tests.
+//! In-memory storage for checkpoints, for tests.
 
 use estimator::Checkpoints;
 use std::cell::RefCell;
 
-/// Keeps at every step; holds the last state and the step it goes before.
+/// Storage that accepts a state at every step and holds the last one, with the number of the step that
+/// follows it.
 #[derive(Debug, Default)]
 pub(crate) struct Kept(RefCell<Option<(u64, Vec<u8>)>>);
 
 impl Kept {
-    /// The step before which the state was kept.
+    /// Returns the number of the step that follows the stored state.
     pub(crate) fn step(&self) -> Option<u64> {
         self.0.borrow().as_ref().map(|(step, _)| *step)
     }

@@ -5,24 +5,25 @@
 use crate::levenberg_marquardt::Linearized;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// A Gaussian posterior about parameters that minimize a mean square over the peaks plus terms that act as a
-/// prior: its precision is the loss's Gauss–Newton matrix A over the residual variance.
+/// Gaussian posterior about parameters that minimize a mean square over the peaks plus prior terms. Its
+/// precision is the loss's Gauss–Newton matrix A divided by the residual variance.
 #[derive(Debug, Clone)]
 pub struct Laplace {
     factor: Cholesky<f64, Dyn>,
     peaks: f64,
-    /// The residual variance of a peak, in the residuals' units.
+    /// Residual variance of a peak, in the units of the residuals.
     variance: f64,
     degrees_of_freedom: f64,
 }
 
 impl Laplace {
-    /// The approximation at a point.
+    /// Computes the approximation at a point.
     ///
     /// The first `peaks` rows of the residuals are those of the peaks, each divided by √peaks; the others are
-    /// the prior's. `degrees_of_freedom` gives the residuals' degrees of freedom from the number of
-    /// peaks and the matrix A⁻¹JᵀJ, J the peaks' rows, whose trace is the number of parameters that the
-    /// peaks determine. `None` where less than one is left, or A is not positive to rounding.
+    /// those of the prior. `degrees_of_freedom` returns the residuals' degrees of freedom, given the number
+    /// of peaks and the matrix A⁻¹JᵀJ, where J holds the peaks' rows; the trace of this matrix is the number
+    /// of parameters that the peaks determine. `None` if less than one degree of freedom is left, or if A is
+    /// not positive definite up to rounding.
     #[must_use]
     pub fn about(
         linearized: &Linearized,
@@ -31,34 +32,35 @@ impl Laplace {
     ) -> Option<Self> {
         let jacobian = &linearized.jacobian;
         let seen = jacobian.tr_mul(jacobian);
-        // Directions that neither peaks nor prior see keep a wide prior.
+        // Directions that neither peaks nor prior determine get a wide prior.
         let wide = DMatrix::from_diagonal_element(seen.nrows(), seen.ncols(), 1e-12 * seen.diagonal().max());
         let factor = Cholesky::new(seen + wide)?;
         let data = jacobian.rows(0, peaks);
-        // Parameters by parameters, however many peaks there are.
+        // Only parameters × parameters, however many peaks there are.
         let hat = factor.solve(&data.tr_mul(&data));
         let count = peaks as f64;
         let degrees = degrees_of_freedom(count, &hat);
-        // The rows of peaks carry 1/√peaks each; undo it for a variance per peak.
+        // The rows of the peaks carry a factor 1/√peaks, which is undone for a variance per peak.
         let mean_square = linearized.residuals.rows(0, peaks).norm_squared();
         let variance = mean_square * count / degrees;
         (degrees >= 1.0).then_some(Self { factor, peaks: count, variance, degrees_of_freedom: degrees })
     }
 
-    /// Degrees of freedom of the residual variance, at least 1.
+    /// Returns the degrees of freedom of the residual variance, at least 1.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> f64 {
         self.degrees_of_freedom
     }
 
-    /// Standard deviation of a quantity with the given derivatives by the parameters.
+    /// Returns the standard deviation of a quantity with the given derivatives with respect to the
+    /// parameters.
     #[must_use]
     pub fn deviation(&self, gradient: &DVector<f64>) -> f64 {
         self.spread(gradient).sqrt()
     }
 
-    /// Standard deviation of a measured value about a function with the given derivatives by the parameters:
-    /// the scatter of a peak, and the function's own.
+    /// Returns the standard deviation of a measured value about a function with the given derivatives with
+    /// respect to the parameters: the scatter of a peak combined with the error of the function.
     #[must_use]
     pub fn predictive_deviation(&self, gradient: &DVector<f64>) -> f64 {
         (self.variance + self.spread(gradient)).sqrt()

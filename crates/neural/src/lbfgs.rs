@@ -1,50 +1,50 @@
 //! Smooth minimization by the limited-memory BFGS method.
 //!
-//! Near the optimum the loss is flat to rounding over half the digits of the parameters; the line search
-//! therefore judges steps by the slope there (the approximate Wolfe conditions), and curvature pairs are
-//! kept by a relative test, so that they do not run out as the steps shrink.
+//! Near the optimum, the loss is flat to rounding over half the digits of the parameters. There the line
+//! search judges steps by the slope (approximate Wolfe conditions), and curvature pairs are accepted by a
+//! relative test, so that pairs are still accepted as the steps shrink.
 //!
-//! Reference: Nocedal, Mathematics of Computation 35 (1980) 773; Hager, Zhang, SIAM J. Optim. 16 (2005)
-//! 170, section 4.
+//! Reference: Nocedal, Mathematics of Computation 35 (1980) 773; Hager, Zhang, SIAM J. Optim. 16 (2005) 170,
+//! section 4.
 
 use crate::minimum::{Iteration, Minimum, StopReason};
 use nalgebra::DVector;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-/// A smooth function to be minimized.
+/// Smooth function to be minimized.
 pub trait Smooth {
-    /// Why an evaluation can fail.
+    /// Error of an evaluation.
     type Error;
 
-    /// Value and gradient at a point.
+    /// Returns value and gradient at a point.
     ///
     /// # Errors
-    /// Whatever keeps the function from being evaluated.
+    /// The reason why the function cannot be evaluated.
     fn value_and_gradient(&self, parameters: &DVector<f64>) -> Result<(f64, DVector<f64>), Self::Error>;
 }
 
-/// The method's settings.
+/// Settings of the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lbfgs {
-    /// Most steps.
+    /// Largest number of steps.
     pub max_steps: u64,
-    /// Curvature pairs remembered; 5 to 30 is usual.
+    /// Number of stored curvature pairs; 5 to 30 is usual.
     pub memory: usize,
-    /// Settled when the gradient's length has fallen to this share of its length at the start. 0 asks
-    /// for all that rounding leaves.
+    /// Gradient norm at which the method has converged, relative to the initial norm. 0 continues until
+    /// rounding errors dominate.
     pub gradient_tolerance: f64,
 }
 
-/// Change of the loss that counts as rounding, as a share of it.
+/// Relative change of the loss that counts as rounding.
 const ROUNDING_SHARE: f64 = 1e-12;
 /// Sufficient decrease (Armijo).
 const DECREASE: f64 = 1e-4;
 /// Sufficient flattening (Wolfe).
 const FLATTENING: f64 = 0.9;
-/// Most evaluations in one line search.
+/// Largest number of evaluations in one line search.
 const MOST_EVALUATIONS: u32 = 40;
-/// Smallest cosine between a step and its change of gradient that makes a curvature pair.
+/// Smallest cosine between a step and its change of gradient for an accepted curvature pair.
 const SMALLEST_COSINE: f64 = 1e-10;
 
 struct Point {
@@ -64,7 +64,7 @@ impl Point {
     }
 }
 
-/// A step and the change of the gradient along it.
+/// Curvature pair: a step, and the change of the gradient along it.
 struct Pair {
     step: DVector<f64>,
     change: DVector<f64>,
@@ -72,11 +72,11 @@ struct Pair {
 }
 
 impl Lbfgs {
-    /// Minimizes a function from a start; `observe` sees the start and the state after every step, and
-    /// may break.
+    /// Minimizes a function from a starting point. `observe` gets the start and the state after every step,
+    /// and may stop the method.
     ///
     /// # Errors
-    /// What the function's evaluation gives.
+    /// The error of the function's evaluation.
     pub fn minimize<P: Smooth>(
         &self,
         problem: &P,
@@ -104,7 +104,7 @@ impl Lbfgs {
             }
             let mut next = descend(problem, &point, &pairs)?;
             if next.is_none() && !pairs.is_empty() {
-                // Rounding has spoiled the pairs: begin anew downhill.
+                // Rounding errors have spoiled the pairs: restart along the steepest descent.
                 pairs.clear();
                 next = descend(problem, &point, &pairs)?;
             }
@@ -120,18 +120,18 @@ impl Lbfgs {
     }
 }
 
-/// The point a step further along the quasi-Newton direction; `None` where that does not lead down.
+/// Returns the next point along the quasi-Newton direction; `None` if the loss cannot be lowered along it.
 fn descend<P: Smooth>(problem: &P, point: &Point, pairs: &VecDeque<Pair>) -> Result<Option<Point>, P::Error> {
     let direction = -inverse_hessian_times(pairs, &point.gradient);
     if direction.dot(&point.gradient) >= 0.0 {
         return Ok(None);
     }
-    // Without a curvature pair the gradient has no scale.
+    // Without a curvature pair, the gradient has no scale.
     let length = if pairs.is_empty() { (1.0 / point.gradient.norm()).min(1.0) } else { 1.0 };
     line_search(problem, point, &direction, length)
 }
 
-/// The two-loop recursion: the approximate inverse Hessian times a vector.
+/// Multiplies a vector by the approximate inverse Hessian, by the two-loop recursion.
 fn inverse_hessian_times(pairs: &VecDeque<Pair>, vector: &DVector<f64>) -> DVector<f64> {
     let mut result = vector.clone();
     let mut shares = Vec::with_capacity(pairs.len());
@@ -162,11 +162,11 @@ fn remember(pairs: &mut VecDeque<Pair>, memory: usize, from: &Point, to: &Point)
     }
 }
 
-/// A point along a direction that lowers the loss enough, or, where rounding hides the loss, the slope;
-/// `None` where there is none to be found.
+/// Searches along a direction for a point that lowers the loss enough or, if rounding hides the loss,
+/// flattens the slope enough; `None` if none is found.
 ///
-/// The bracket's lower end slopes down and is no higher than the start, its upper end slopes up or is
-/// higher; secants of the slope, or halving where they leave the bracket, close in on the minimum.
+/// The lower end of the bracket slopes down and is no higher than the start; its upper end slopes up or is
+/// higher. Secant steps on the slope, or bisections if these leave the bracket, close in on the minimum.
 fn line_search<P: Smooth>(
     problem: &P,
     start: &Point,
@@ -217,8 +217,8 @@ mod tests {
     use std::convert::Infallible;
     use std::ops::ControlFlow;
 
-    /// Rosenbrock's function in pairs (Computer Journal 3 (1960) 175), raised by 1 so that its minimum
-    /// hides small changes in rounding.
+    /// Rosenbrock's function in pairs (Computer Journal 3 (1960) 175), raised by 1 so that rounding hides
+    /// small changes near its minimum.
     struct Rosenbrock;
 
     impl Smooth for Rosenbrock {

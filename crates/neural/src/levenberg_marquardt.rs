@@ -1,7 +1,8 @@
 //! Nonlinear least squares by the Levenberg–Marquardt method.
 //!
 //! Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; the damping update of Nielsen, report
-//! IMM-REP-1999-05 (DTU 1999); the stopping test of MINPACK: Moré, Garbow, Hillstrom, report ANL-80-74 (1980).
+//! IMM-REP-1999-05 (DTU 1999); the stopping test of MINPACK: Moré, Garbow, Hillstrom, report ANL-80-74
+//! (1980).
 
 use crate::minimum::{Iteration, Minimum, StopReason};
 use estimator::{FitContext, FitError, Reached, Stop};
@@ -12,58 +13,58 @@ use std::ops::ControlFlow;
 /// Residuals and their Jacobian at a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearized {
-    /// One entry for each equation.
+    /// Residuals, one per equation.
     pub residuals: DVector<f64>,
-    /// Equations by parameters.
+    /// Jacobian, equations × parameters.
     pub jacobian: DMatrix<f64>,
 }
 
-/// A sum of squares to be minimized.
+/// Sum of squares to be minimized.
 pub trait LeastSquares {
-    /// Why an evaluation can fail.
+    /// Error of an evaluation.
     type Error;
 
-    /// Residuals at a point.
+    /// Returns the residuals at a point.
     ///
     /// # Errors
-    /// Whatever keeps the problem from being evaluated.
+    /// The reason why the problem cannot be evaluated.
     fn residuals(&self, parameters: &DVector<f64>) -> Result<DVector<f64>, Self::Error>;
 
-    /// Residuals and Jacobian at a point.
+    /// Returns residuals and Jacobian at a point.
     ///
     /// # Errors
-    /// Whatever keeps the problem from being evaluated.
+    /// The reason why the problem cannot be evaluated.
     fn linearize(&self, parameters: &DVector<f64>) -> Result<Linearized, Self::Error>;
 
-    /// Parameters after a step, with those that enter the residuals linearly at their best values (variable
-    /// projection); as they are, unless the problem knows better.
+    /// Returns the parameters after a step, with the optimal values of those that enter the residuals
+    /// linearly (variable projection). The default returns them unchanged.
     ///
-    /// From such a point the full step is that of the projected problem in Kaufman's form.
+    /// From such a point, the full step is that of the projected problem in Kaufman's form.
     ///
-    /// References: Golub, Pereyra, SIAM J. Numer. Anal. 10 (1973) 413; Kaufman, BIT 15 (1975) 49; Ruhe, Wedin, SIAM
-    /// Review 22 (1980) 318.
+    /// References: Golub, Pereyra, SIAM J. Numer. Anal. 10 (1973) 413; Kaufman, BIT 15 (1975) 49; Ruhe,
+    /// Wedin, SIAM Review 22 (1980) 318.
     ///
     /// # Errors
-    /// Whatever keeps the problem from being evaluated.
+    /// The reason why the problem cannot be evaluated.
     fn project(&self, parameters: DVector<f64>) -> Result<DVector<f64>, Self::Error> {
         Ok(parameters)
     }
 }
 
-/// The method's settings.
+/// Settings of the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevenbergMarquardt {
-    /// Most steps, rejected ones included.
+    /// Largest number of steps, including rejected ones.
     pub max_steps: u64,
-    /// Converged when a step lowers the loss by a smaller share of itself than this, both as predicted
-    /// and in fact. 0 asks for all that rounding leaves.
+    /// Relative decrease of the loss, both predicted and actual, at which the method has converged. 0
+    /// continues until rounding errors dominate.
     pub loss_tolerance: f64,
 }
 
-/// A step so small that the change of the loss drowns in its rounding, as a share of the loss.
+/// Predicted relative decrease of the loss below which rounding errors hide the actual one.
 const ROUNDING_SHARE: f64 = 1e-10;
 
-/// Most rejected steps in a row before the point is called stationary.
+/// Number of successive rejected steps after which the point counts as stationary.
 const MOST_REJECTIONS: u32 = 12;
 
 struct Point {
@@ -73,12 +74,12 @@ struct Point {
     loss: f64,
 }
 
-/// What the method goes on from, but for what follows from the parameters.
+/// State from which the method resumes, except for what follows from the parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct State {
     parameters: Vec<f64>,
     steps: u64,
-    /// `None` before the first step: it follows from the Jacobian.
+    /// `None` before the first step: it is then computed from the Jacobian.
     damping: Option<f64>,
     growth: f64,
     rejections: u32,
@@ -97,7 +98,8 @@ impl State {
         }
     }
 
-    /// Why a minimization over so many parameters in at most so many steps cannot have kept this.
+    /// Returns the reason why a minimization with this many parameters and at most this many steps cannot
+    /// have stored this state; `None` if it can.
     fn refusal(&self, parameters: usize, max_steps: u64) -> Option<String> {
         let (found, steps, rejections) = (self.parameters.len(), self.steps, self.rejections);
         if found != parameters {
@@ -111,12 +113,12 @@ impl State {
     }
 }
 
-/// A step that was taken.
+/// Accepted step.
 struct Accepted {
     next: Point,
-    /// The share of the predicted decrease that came true.
+    /// Actual over predicted decrease, at most 1.
     gain: f64,
-    /// The decrease, predicted or true, whichever is larger, as a share of the loss.
+    /// Larger of predicted and actual decrease, relative to the loss.
     share: f64,
 }
 
@@ -130,15 +132,15 @@ impl Point {
 }
 
 impl LevenbergMarquardt {
-    /// Minimizes a sum of squares from a start; `observe` sees the start and the state after every
-    /// step, and may break.
+    /// Minimizes a sum of squares from a starting point. `observe` gets the start and the state after every
+    /// step, and may stop the method.
     ///
-    /// Far from the minimum a step is accepted when it lowers the loss. Near it, where the loss no
-    /// longer shows the step, it is accepted when it lowers the gradient: the loss is flat to rounding
-    /// over half the digits of the parameters, the gradient is not.
+    /// Far from the minimum, a step is accepted if it lowers the loss. Near the minimum, where rounding hides
+    /// the change of the loss, it is accepted if it lowers the norm of the gradient: the loss is flat to
+    /// rounding over half the digits of the parameters, the gradient is not.
     ///
     /// # Errors
-    /// What the problem's evaluation gives.
+    /// The error of the problem's evaluation.
     pub fn minimize<P: LeastSquares>(
         &self,
         problem: &P,
@@ -148,12 +150,12 @@ impl LevenbergMarquardt {
         self.go_on(problem, State::at(start), |_, _| Ok(()), observe)
     }
 
-    /// As [`minimize`](Self::minimize), keeping its state where the context says, and going on from one that was
-    /// kept: to the bit as if it had never stopped.
+    /// Minimizes like [`minimize`](Self::minimize), but stores its state through the context and resumes from
+    /// a stored one, bit for bit as if it had never stopped.
     ///
     /// # Errors
-    /// What the problem's evaluation gives; [`FitError::Checkpoint`] where a state cannot be kept, or the one that was
-    /// is none that this method with this start could have kept.
+    /// The error of the problem's evaluation; [`FitError::Checkpoint`] if a state cannot be stored, or if the
+    /// stored one does not belong to this method with this start.
     pub fn minimize_resumably<P: LeastSquares<Error = FitError>>(
         &self,
         problem: &P,
@@ -230,7 +232,8 @@ impl LevenbergMarquardt {
         Ok(Minimum { last_gain, loss: point.loss, parameters: point.parameters, steps, reason })
     }
 
-    /// What a fit reached with a minimum of this method, and why it stopped there, as an estimate says it.
+    /// Describes a minimum of this method for an estimate: the outcome of the fit and the reason why it
+    /// stopped.
     #[must_use]
     pub fn stop(minimum: &Minimum) -> Stop {
         let steps = minimum.steps;
@@ -255,7 +258,7 @@ impl LevenbergMarquardt {
         Stop { reached, because }
     }
 
-    /// The point after a step, or `None` where it is worse.
+    /// Returns the point after a step; `None` if it is worse.
     fn try_step<P: LeastSquares>(
         &self,
         problem: &P,
@@ -284,11 +287,11 @@ impl LevenbergMarquardt {
     }
 }
 
-/// The normal matrix, on whichever side of the Jacobian is smaller.
+/// Normal matrix, formed on the smaller side of the Jacobian.
 enum Normal {
-    /// JᵀJ, parameters by parameters.
+    /// JᵀJ, parameters × parameters.
     Parameters(DMatrix<f64>),
-    /// J·Jᵀ, equations by equations: (JᵀJ + μ)⁻¹Jᵀ = Jᵀ(J·Jᵀ + μ)⁻¹.
+    /// J·Jᵀ, equations × equations: (JᵀJ + μ)⁻¹Jᵀ = Jᵀ(J·Jᵀ + μ)⁻¹.
     Equations(DMatrix<f64>),
 }
 
@@ -306,7 +309,8 @@ impl Normal {
         matrix.diagonal().max()
     }
 
-    /// The step −(JᵀJ + μ)⁻¹·Jᵀr; `None` where the damped matrix is not positive to rounding.
+    /// Returns the step −(JᵀJ + μ)⁻¹·Jᵀr; `None` if the damped matrix is not positive definite up to
+    /// rounding.
     fn solve(&self, point: &Point, damping: f64) -> Option<DVector<f64>> {
         let factor = |matrix: &DMatrix<f64>| -> Option<Cholesky<f64, Dyn>> {
             Cholesky::new(matrix + DMatrix::from_diagonal_element(matrix.nrows(), matrix.ncols(), damping))
@@ -396,7 +400,7 @@ mod tests {
         assert!(minimum.loss < 1e-20, "{minimum:?}");
     }
 
-    /// [`Decay`] where an evaluation may fail.
+    /// [`Decay`] with the error type of a fallible evaluation.
     struct Fallible;
 
     impl LeastSquares for Fallible {
@@ -434,7 +438,7 @@ mod tests {
             assert_eq!((stopped.reason, stopped.steps), (StopReason::Interrupted, most));
             let (resumed, after) = minimize(&kept, u64::MAX);
             assert_eq!(resumed, whole);
-            // The step before which the state was kept is told again.
+            // The step before which the state was stored is reported again.
             assert_eq!([&before[..before.len() - 1], &after].concat(), told);
         }
         // A state of another problem is refused.

@@ -1,11 +1,10 @@
-//! What the networks share on burn: double precision, affine-skip networks, encoders of a decay,
-//! parameters as a flat list, Levenberg-Marquardt, limited-memory BFGS, Adam, safetensors; and how a network
-//! learns to read envelopes in general ([`amortized`]).
+//! Tools on burn that the networks share: double precision, affine-skip networks, encoders of a decay, flat
+//! parameter lists, Levenberg–Marquardt, limited-memory BFGS, Adam, safetensors files, and amortized reading
+//! of envelopes ([`amortized`]).
 //!
-//! burn computes forward and backward passes; what is added here is what reaching many digits takes:
-//! a device set to double precision, exact Jacobians of a network's values and of its input
-//! derivatives, optimizers that know when rounding has the last word, and what the Jacobian at the optimum
-//! says of the errors.
+//! burn computes forward and backward passes. This crate adds what high accuracy requires: a device set to
+//! double precision, exact Jacobians of a network's values and of its input derivatives, optimizers that
+//! detect when rounding errors dominate, and error estimates from the Jacobian at the optimum.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

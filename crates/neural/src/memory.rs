@@ -1,20 +1,23 @@
-//! What the matrices of a network's fit take, known before one is made: an allocation that fails ends the program.
+//! Memory limit of a network's fit, checked before any matrix is allocated: a failed allocation would end the
+//! program.
 
 use settings::{Resolved, SettingsError};
 
-/// Most bytes that a fit's matrices may take: 16 GiB. A fit that takes them computes for hours, too.
+/// Largest number of bytes that a fit's matrices may take: 16 GiB. A fit of this size also takes hours.
 const MOST_BYTES: f64 = 16.0 * GIB;
 const GIB: f64 = (1_u64 << 30) as f64;
-/// Matrices of one kind that are held at once: in `Laplace::about` parameters by parameters the normal matrix, its
-/// factor, the peaks' part of it and what the factor makes of that; Jacobians before and after they are put together.
+/// Number of matrices of one kind held at the same time. In `Laplace::about`, these are parameters ×
+/// parameters: the normal matrix, its factor, the peaks' part of it, and the solution with the factor.
+/// Jacobians are also held before and after they are joined.
 const AT_ONCE: f64 = 4.0;
 
-/// Refuses hidden widths, `estimator.hidden`, whose `parameters` take more memory than there may be: matrices
-/// of doubles, parameters by parameters and points by parameters, where `points` are those that the settings
-/// ask for.
+/// Refuses hidden widths (`estimator.hidden`) whose `parameters` need more memory than allowed.
+///
+/// The matrices hold doubles, parameters × parameters and points × parameters; `points` is the number of
+/// points that the settings ask for.
 ///
 /// # Errors
-/// [`SettingsError::BadValue`] with the size and what to reduce.
+/// [`SettingsError::BadValue`] with the size and the setting to reduce.
 pub fn check_memory(settings: &Resolved, parameters: usize, points: usize) -> Result<(), SettingsError> {
     let (columns, rows) = (parameters as f64, points as f64);
     let bytes = AT_ONCE * columns * (columns + rows) * size_of::<f64>() as f64;

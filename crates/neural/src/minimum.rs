@@ -1,26 +1,26 @@
-//! What an optimizer tells while it works and when it stops.
+//! Progress and results of an optimizer.
 
 use nalgebra::DVector;
 
-/// State after a step.
+/// State of an optimizer after a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Iteration<'a> {
-    /// Steps taken so far; 0 is the start.
+    /// Number of steps so far; 0 is the start.
     pub step: u64,
-    /// The parameters in force.
+    /// Current parameters.
     pub parameters: &'a DVector<f64>,
-    /// Their loss.
+    /// Loss of the parameters.
     pub loss: f64,
 }
 
-/// Why an optimizer stopped.
+/// Reason why an optimizer stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StopReason {
-    /// The method's own tolerance holds.
+    /// The method's own tolerance was reached.
     Settled,
-    /// No step lowers the loss or the gradient any more: rounding has the last word.
+    /// No step lowers the loss or the gradient any further: rounding errors dominate.
     Stationary,
-    /// The steps are used up.
+    /// The budget of steps is used up.
     StepsSpent,
     /// The loss is not finite.
     NotFinite,
@@ -28,17 +28,17 @@ pub enum StopReason {
     Interrupted,
 }
 
-/// Where an optimizer stopped.
+/// Result of an optimizer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Minimum {
-    /// The best parameters met.
+    /// Best parameters found.
     pub parameters: DVector<f64>,
-    /// Their loss.
+    /// Loss of the parameters.
     pub loss: f64,
-    /// The share of the loss that the last accepted step took off; infinite before there was one.
+    /// Relative decrease of the loss by the last accepted step; infinite if there was none.
     pub last_gain: f64,
-    /// Steps taken.
+    /// Number of steps taken.
     pub steps: u64,
-    /// Why it stopped.
+    /// Reason for stopping.
     pub reason: StopReason,
 }

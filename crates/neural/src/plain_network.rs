@@ -1,8 +1,8 @@
-//! The affine-skip network on plain matrices: values, input derivatives and exact Jacobians without a tape.
+//! Affine-skip network on plain matrices: values, input derivatives and exact Jacobians without a tape.
 //!
-//! A tape keeps a node for every small operation and lends a tensor to each. For a network of a few hundred weights and a
-//! few hundred points that takes most of a training's time; the adjoint by hand is a dozen matrix products. Test:
-//! both agree to rounding.
+//! A tape keeps a node and a tensor for every small operation. For a network of a few hundred weights and a
+//! few hundred points, this takes most of the training time; the hand-written adjoint is a dozen matrix
+//! products. A test checks that both agree up to rounding.
 //!
 //! Reference: Griewank, Walther, Evaluating Derivatives, 2nd ed. (SIAM 2008), chapter 3 (adjoints by hand).
 
@@ -10,8 +10,8 @@ use crate::affine_skip::AffineSkipNetwork;
 use estimator::FitError;
 use nalgebra::{DMatrix, DMatrixViewMut, RowDVector};
 
-/// f(t) = a + b·t + net(t) with its weights as matrices; see [`AffineSkipNetwork`], whose flat list of parameters it
-/// takes.
+/// Network f(t) = a + b·t + net(t) with its weights as matrices. It takes the flat parameter list of
+/// [`AffineSkipNetwork`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlainNetwork {
     layers: Vec<Layer>,
@@ -21,31 +21,31 @@ pub struct PlainNetwork {
 
 #[derive(Debug, Clone, PartialEq)]
 struct Layer {
-    /// Inputs by outputs.
+    /// Weights, inputs × outputs.
     weights: DMatrix<f64>,
     biases: RowDVector<f64>,
 }
 
-/// What is linearized.
+/// Quantity that is computed or linearized.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of {
-    /// The network's values.
+    /// Values of the network.
     Value,
-    /// Their derivatives with respect to the input.
+    /// Derivatives of the values with respect to the input.
     Derivative,
 }
 
-/// A layer's inputs at all points, points by inputs, and their derivatives with respect to t.
+/// Inputs of a layer at all points, points × inputs, and their derivatives with respect to t.
 struct Carried {
     value: DMatrix<f64>,
     derivative: DMatrix<f64>,
 }
 
 impl PlainNetwork {
-    /// The network with given hidden widths and parameters in the order of the flat list.
+    /// Builds a network with given hidden widths and the parameters in the order of the flat list.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where the number of parameters is not
+    /// [`FitError::Backend`] if the number of parameters is not
     /// [`parameter_count`](AffineSkipNetwork::parameter_count).
     pub fn new(hidden: &[usize], parameters: &[f64]) -> Result<Self, FitError> {
         let expected = AffineSkipNetwork::parameter_count(hidden);
@@ -72,18 +72,19 @@ impl PlainNetwork {
         Ok(Self { layers, intercept, slope })
     }
 
-    /// Values or derivatives at points, one for each.
+    /// Returns values or derivatives, one per point.
     #[must_use]
     pub fn at(&self, of: Of, t: &[f64]) -> Vec<f64> {
         let (carried, _) = self.forward(of, t, false);
         self.output(of, t, &carried)
     }
 
-    /// Outputs of the last hidden layer, points by its width, or their derivatives: what the last layer's weights multiply.
+    /// Returns the outputs of the last hidden layer, or their derivatives, as points × width: the factors of
+    /// the last layer's weights.
     #[must_use]
     pub fn last_hidden(&self, of: Of, t: &[f64]) -> DMatrix<f64> {
         let (_, mut inputs) = self.forward(of, t, true);
-        // There is an output layer always.
+        // There is always an output layer.
         inputs.pop().map_or_else(
             || DMatrix::zeros(t.len(), 0),
             |last| match of {
@@ -93,8 +94,8 @@ impl PlainNetwork {
         )
     }
 
-    /// Values or derivatives at points, and `scale` times their derivatives with respect to every parameter, which go
-    /// into `jacobian`, points by parameters; all of it is overwritten.
+    /// Returns values or derivatives at points. Writes `scale` times their derivatives with respect to every
+    /// parameter into `jacobian`, points × parameters; all of it is overwritten.
     #[must_use]
     pub fn linearize(
         &self,
@@ -112,7 +113,8 @@ impl PlainNetwork {
             Of::Value => slope.iter_mut().zip(t).for_each(|(entry, t)| *entry = scale * t),
             Of::Derivative => slope.fill(scale),
         }
-        // Adjoints of a layer's sums and of their derivatives; the last layer's are the output.
+        // Adjoints of a layer's pre-activations and of their derivatives; for the last layer, these are those
+        // of the output.
         let ones = DMatrix::from_element(t.len(), 1, scale);
         let (mut by_value, mut by_derivative) = match of {
             Of::Value => (ones, None),
@@ -156,8 +158,8 @@ impl PlainNetwork {
         }
     }
 
-    /// The last layer's sums, and every layer's inputs where they are asked for. Derivatives are carried only where they
-    /// are what is asked for.
+    /// Returns the last layer's pre-activations and, if requested, every layer's inputs. Derivatives are
+    /// carried only if they are requested.
     fn forward(&self, of: Of, t: &[f64], kept: bool) -> (Carried, Vec<Carried>) {
         let derivative = match of {
             Of::Value => DMatrix::zeros(0, 0),
@@ -188,8 +190,8 @@ impl PlainNetwork {
     }
 }
 
-/// From the adjoints of a layer's sums to those of the layer below, whose outputs are `input`: x = tanh(p),
-/// x′ = (1 − x²)·p′. The slope 1 − x² of p′ is already in x′, so that −2·x·p′·(1 − x²) = −2·x·x′.
+/// Propagates the adjoints of a layer's pre-activations to the layer below, whose outputs are `input`: x =
+/// tanh(p), x′ = (1 − x²)·p′. The factor 1 − x² of p′ is already in x′, so that −2·x·p′·(1 − x²) = −2·x·x′.
 fn back(
     layer: &Layer,
     input: &Carried,

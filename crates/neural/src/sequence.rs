@@ -1,12 +1,11 @@
-//! What the networks read: an envelope's peaks as a sequence in scaled units.
+//! Input of the networks: an envelope's peaks as a sequence in scaled units.
 
 use envelope::Envelope;
 use estimator::{FitContext, Scaling};
 
-/// What an encoder reads: peaks, or means of neighboring peaks, in scaled units.
+/// Sequence that an encoder reads: peaks, or means of neighboring peaks, in scaled units.
 ///
-/// Times s in −1..1 by the record's length, values z with mean 0 and standard deviation 1 over the
-/// peaks.
+/// Times s run from −1 to 1 over the record; values z have mean 0 and standard deviation 1 over the peaks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sequence {
     /// Scaled times, increasing.
@@ -16,25 +15,25 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The peaks of an envelope.
+    /// Returns the peaks of an envelope in scaled units.
     #[must_use]
     pub fn of(envelope: &Envelope, scaling: &Scaling) -> Self {
         Self { times: scaling.centered_times(envelope), values: scaling.scaled_logs(envelope) }
     }
 
-    /// Number of entries.
+    /// Returns the number of entries.
     #[must_use]
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// Whether there are no entries.
+    /// Returns `true` if there are no entries.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
     }
 
-    /// The mean time between entries; 1 where there is one entry only.
+    /// Returns the mean time between entries; 1 for fewer than two entries.
     #[must_use]
     pub fn mean_interval(&self) -> f64 {
         match (self.times.first(), self.times.last()) {
@@ -43,15 +42,15 @@ impl Sequence {
         }
     }
 
-    /// What a network is shown of it: the sequence itself, or white noise where an [ablation](FitContext::input) asks for
-    /// that.
+    /// Returns the sequence as a network sees it: unchanged, or replaced by white noise if an
+    /// [ablation](FitContext::input) requests it.
     #[must_use]
     pub fn as_read(self, context: &FitContext<'_>) -> Self {
         Self { times: context.input("times", self.times), values: context.input("amplitudes", self.values) }
     }
 
-    /// At most `most` entries: the means of times and values over runs of neighbors, the runs' lengths
-    /// as even as they can be. A shorter sequence stays as it is.
+    /// Pools the sequence to at most `most` entries: means of times and values over runs of neighbors, with
+    /// lengths as equal as possible. A shorter sequence stays unchanged.
     #[must_use]
     pub fn pooled(self, most: usize) -> Self {
         let (count, runs) = (self.len(), most.max(1));
@@ -97,7 +96,7 @@ mod tests {
         let squares: f64 = scaled.values.iter().map(|z| z * z).sum();
         assert!((squares / 3.0 - 1.0).abs() < 1e-15);
         assert_eq!(scaled.mean_interval(), 1.0);
-        // z = c − r·s is ln A = ln A₀ − λ·t with λ the scaled-back rate r.
+        // z = c − r·s is ln A = ln A₀ − λ·t, where λ is the rate r in physical units.
         let [at_start, at_end] = [-1.0, 1.0].map(|s| scaling.log_amplitude(0.3 - 0.7 * s));
         assert!((at_start - 4.0 * scaling.rate_per_centered_time(0.7) - at_end).abs() < 1e-14);
     }

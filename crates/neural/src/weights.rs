@@ -1,23 +1,23 @@
-//! Weights in and out of safetensors files.
+//! Weights to and from safetensors files.
 
 use estimator::FitError;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
 
-/// A tensor of doubles with a name.
+/// Named tensor of doubles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedTensor {
-    /// Its name, such as `layers.0.weight`.
+    /// Name, such as `layers.0.weight`.
     pub name: String,
-    /// Its shape.
+    /// Lengths of the axes.
     pub shape: Vec<usize>,
-    /// Its values, the last axis fastest.
+    /// Values; the last axis varies fastest.
     pub values: Vec<f64>,
 }
 
-/// The tensors as the bytes of a safetensors file, type F64.
+/// Serializes tensors to the bytes of a safetensors file of type F64.
 ///
 /// # Errors
-/// [`FitError::Backend`] where a shape does not fit its values or a name repeats.
+/// [`FitError::Backend`] if a shape does not match its values or a name repeats.
 pub fn to_safetensors(tensors: &[NamedTensor]) -> Result<Vec<u8>, FitError> {
     let refused = |error| FitError::Backend { problem: format!("safetensors: {error}") };
     let bytes: Vec<Vec<u8>> = tensors
@@ -32,10 +32,10 @@ pub fn to_safetensors(tensors: &[NamedTensor]) -> Result<Vec<u8>, FitError> {
     serialize(views, None).map_err(refused)
 }
 
-/// The tensors of a safetensors file that [`to_safetensors`] wrote, by name.
+/// Reads the tensors of a safetensors file that [`to_safetensors`] wrote, sorted by name.
 ///
 /// # Errors
-/// [`FitError::Backend`] where the bytes are no such file or hold another type than F64.
+/// [`FitError::Backend`] if the bytes are no such file or hold another type than F64.
 pub fn from_safetensors(bytes: &[u8]) -> Result<Vec<NamedTensor>, FitError> {
     let refused = |problem: String| FitError::Backend { problem: format!("safetensors: {problem}") };
     let file = SafeTensors::deserialize(bytes).map_err(|error| refused(error.to_string()))?;

@@ -1,6 +1,7 @@
-//! The test of amortized reading that every amortized network passes: their modules include this file.
+//! Test of amortized reading that every amortized network must pass; the modules of these networks include
+//! this file.
 //!
-//! It takes the network from `super::AMORTIZED_ENTRY` and its settings from `super::FIELDS`.
+//! It uses the network of `super::AMORTIZED_ENTRY` and its settings in `super::FIELDS`.
 
 use super::{AMORTIZED_ENTRY, FIELDS};
 use conformance::least_squares;
@@ -10,8 +11,8 @@ use neural::amortized::Prior;
 use seed::Seed;
 use settings::{Document, Resolved, Section};
 
-/// Trained at the default settings, then shown envelopes drawn from the prior on another branch of the
-/// seed, of as many peaks each as the draw says.
+/// The network is trained with the default settings. It then reads envelopes drawn from the prior on another
+/// branch of the seed; the number of peaks of each is drawn as well.
 #[test]
 #[allow(clippy::print_stdout, reason = "the figures, for whoever asks with --nocapture")]
 fn over_a_thousand_fresh_envelopes_it_is_nearly_as_good_as_least_squares_and_calibrated() {
@@ -25,22 +26,23 @@ fn over_a_thousand_fresh_envelopes_it_is_nearly_as_good_as_least_squares_and_cal
     let mut generator = Seed::new(0).child("fresh").generator();
     let (mut own, mut best, mut held) = (0.0, 0.0, 0);
     for _ in 0..1000 {
-        // s from −1 to 1 as 20 s.
+        // s from −1 to 1 stands for 20 s.
         let (sequence, [_, rate]) = prior.sequences(1, &mut generator).remove(0);
         let times = sequence.times.iter().map(|s| 10.0 * (s + 1.0)).collect();
         let envelope = Envelope::new(times, sequence.values, 21.8).unwrap();
         let (truth, line) = (rate / 10.0, least_squares(&envelope));
         let estimate = reader.fit(&envelope, &context).unwrap();
         let [low, high] = estimate.uncertainty.unwrap().interval_95;
-        // Each in units of its line's standard error, so that the worst envelopes do not decide.
+        // Each error is divided by the standard error of its least-squares line, so that the worst envelopes
+        // do not dominate.
         own += ((estimate.decay_rate - truth) / line.std_error).powi(2);
         best += ((line.decay_rate - truth) / line.std_error).powi(2);
         held += u32::from((low..=high).contains(&truth));
     }
     let (ratio, share) = (f64::sqrt(own / best), f64::from(held) / 1000.0);
     println!("error {ratio:.4} of least squares', {:.1} % of the intervals hold λ", 100.0 * share);
-    // A thousand envelopes know the ratio to about 1 %: better than the efficient estimator would be
-    // luck or a fault.
+    // A thousand envelopes determine the ratio to about 1 %. A result better than the efficient estimator
+    // would be luck or a fault.
     assert!((0.97..1.1).contains(&ratio), "{ratio}");
     assert!((0.935..0.965).contains(&share), "{share}");
 }

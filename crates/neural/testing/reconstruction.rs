@@ -1,5 +1,5 @@
-//! Tests of whole fits: those that every network trained on one envelope has to pass. The module that includes this file
-//! gives `Config`, the settings, and `WEIGHT`, the name of one of the weights.
+//! Tests of whole fits that every network trained on one envelope must pass. The module that includes this
+//! file defines `Config`, the settings, and `WEIGHT`, the name of one of the weights.
 
 use super::{Config, WEIGHT};
 use crate::ENTRY;
@@ -23,7 +23,7 @@ fn scatter(at: usize) -> f64 {
     (at * 7919 % 101) as f64 / 101.0 - 0.5
 }
 
-/// Times that are not quite even.
+/// Returns slightly uneven times.
 fn times(count: usize) -> Vec<f64> {
     (0..count).map(|at| 0.288 * at as f64 + 0.02 * (scatter(at) - scatter(0))).collect()
 }
@@ -34,7 +34,7 @@ fn envelope_of(log_amplitude: impl Fn(usize, f64) -> f64) -> Envelope {
     Envelope::new(times, logs, 21.8).unwrap()
 }
 
-/// An envelope that is no exponential: it bends and scatters.
+/// Returns an envelope that is not exponential: it bends and scatters.
 fn envelope() -> Envelope {
     conformance::bent().unwrap()
 }
@@ -82,7 +82,7 @@ fn the_same_seed_gives_the_same_bits_and_another_another_way() {
     let [one, same, other] = [1, 1, 2].map(|seed| fit(&envelope, seed, Some(3)));
     assert_eq!(one, same);
     assert_ne!(one.decay_rate.to_bits(), other.decay_rate.to_bits());
-    // Other threads at work beside it change nothing.
+    // Other threads working at the same time change nothing.
     std::thread::scope(|scope| {
         for thread in [0, 1].map(|_| scope.spawn(|| fit(&envelope, 1, Some(3)))) {
             assert_eq!(thread.join().unwrap(), one);
@@ -124,7 +124,7 @@ fn it_follows_the_units() {
     }
 }
 
-/// s²·(1 + 1/n + (t − t̄)²/Σ(t − t̄)²), the textbook's variance of a new observation.
+/// s²·(1 + 1/n + (t − t̄)²/Σ(t − t̄)²), the textbook variance of a new observation.
 #[test]
 fn it_predicts_a_peak_as_the_line_does() {
     let (envelope, cancel) = (envelope(), Cancel::new());
@@ -170,7 +170,7 @@ fn the_interval_covers_the_truth_as_often_as_it_says() {
         let [low, high] = estimate.uncertainty.unwrap().interval_95;
         (low..=high).contains(&0.2)
     });
-    // Of 100, 95 ± 2.2; the bounds are four standard deviations off.
+    // Of 100, 95 ± 2.2; the bounds are four standard deviations away.
     let covered = covered.count();
     assert!((86..=100).contains(&covered), "{covered}");
 }

@@ -1,5 +1,5 @@
-//! How long each of the eleven classical methods takes: 69 peaks of a bent, scattered envelope, the one that the
-//! learned methods are timed on.
+//! Benchmark of the eleven classical methods: 69 peaks of a bent, scattered envelope, the same as in the
+//! benchmark of the learned methods.
 //!
 //!     cargo bench -p oracle
 
@@ -15,7 +15,7 @@ fn main() {
     divan::main();
 }
 
-/// That of `conformance::bent`, which the oracle must not reach.
+/// Envelope of `conformance::bent`; the oracle must not depend on that crate.
 fn envelope() -> Envelope {
     let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
     let scatter = |time: f64| 0.03 * (37.0 * time).sin() + 0.02 * (91.0 * time + 1.0).cos();
@@ -32,7 +32,7 @@ fn warm(bencher: Bencher<'_, '_>, id: &str) {
     let envelope = envelope();
     let route = CLASSICAL.iter().find(|route| route.id == id).unwrap();
     let certified = decay_rate(&envelope).unwrap().decay_rate;
-    // Gradient descent is the worst of them, at 1e-9.
+    // Gradient descent is the least accurate of them, at 1e-9.
     assert!((fit(route, &envelope).decay_rate / certified - 1.0).abs() < 1e-7, "{id}");
     bencher.bench(|| fit(route, black_box(&envelope)));
 }

@@ -1,51 +1,51 @@
-//! The certifying route: column-scaled QR in double-double arithmetic.
+//! Certifying route: column-scaled QR in double-double arithmetic.
 
 use crate::FEWEST_DIGITS;
 use crate::double_double::{DoubleDouble, UNIT_ROUNDOFF, dot};
 use crate::error::OracleError;
 
-/// Digits of a double.
+/// Significant decimal digits of a double.
 const MOST_DIGITS: f64 = 15.65;
 
-/// Whether the first column is the constant one, so that R² is about the mean.
+/// Presence of a constant column, which decides whether R² is about the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Intercept {
     /// The columns contain a constant: R² = 1 − RSS / Σ(y − ȳ)².
     Included,
-    /// They do not: R² = 1 − RSS / Σy².
+    /// The columns contain no constant: R² = 1 − RSS / Σy².
     None,
 }
 
-/// A linear least-squares fit.
+/// Linear least-squares fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearFit {
     /// Coefficients, in the order of the columns.
     pub coefficients: Vec<f64>,
-    /// Their standard errors under independent residuals of one variance.
+    /// Standard errors of the coefficients, for independent residuals of one variance.
     pub std_errors: Vec<f64>,
     /// Residuals, in the order of the rows.
     pub residuals: Vec<f64>,
-    /// √(RSS / (rows − columns)).
+    /// Standard deviation of the residuals, √(RSS / (rows − columns)).
     pub residual_std_dev: f64,
     /// Coefficient of determination.
     pub r_squared: f64,
     /// Two-norm condition number of the design matrix with columns scaled to length one.
     pub condition: f64,
-    /// Significant digits promised for every coefficient that is not zero.
+    /// Significant digits promised for every nonzero coefficient.
     pub promised_digits: f64,
 }
 
-/// Least squares of `y` on the columns of a design matrix, each a slice as long as `y`.
+/// Fits `y` by least squares on the columns of a design matrix, each a slice as long as `y`.
 ///
-/// Columns are scaled to length one, orthogonalized by the modified Gram–Schmidt process with `y` as
-/// the last column, and back-substituted, all in double-double arithmetic; the doubles given are taken
-/// as exact. The promise is the forward-error bound c·u·(κ + κ²·tan θ) with u the unit roundoff, κ the
-/// condition number, θ the angle between `y` and its fit and c = 10·(rows + columns): an upper bound for
-/// every problem met so far, not an estimate.
+/// Columns are scaled to length one, orthogonalized by the modified Gram–Schmidt process with `y` as the last
+/// column, and back-substituted, all in double-double arithmetic; the given doubles are taken as exact. The
+/// promise is the forward-error bound c·u·(κ + κ²·tan θ) with u the unit roundoff, κ the condition number, θ
+/// the angle between `y` and its fit, and c = 10·(rows + columns). It has been an upper bound for every
+/// problem tried so far; it is not an estimate.
 ///
 /// # Errors
-/// [`OracleError::Shape`], [`OracleError::TooFewRows`], [`OracleError::NotFinite`] for unusable input;
-/// [`OracleError::IllConditioned`] where fewer than four digits can be promised.
+/// [`OracleError::Shape`], [`OracleError::TooFewRows`] and [`OracleError::NotFinite`] for unusable input;
+/// [`OracleError::IllConditioned`] if fewer than four digits can be promised.
 ///
 /// # Reference
 /// Björck, Numerical Methods for Least Squares Problems (SIAM 1996), sections 1.4 and 2.4.
@@ -116,15 +116,16 @@ pub(crate) fn check(columns: &[&[f64]], y: &[f64]) -> Result<(), OracleError> {
     Ok(())
 }
 
-/// An upper triangle by rows (row i holds columns i, i+1, …), the transformed right-hand side, and what
-/// is left of it.
+/// Upper triangle by rows (row i holds columns i, i+1, …), with the transformed right-hand side and its
+/// residual.
 struct Triangle {
     r: Vec<Vec<DoubleDouble>>,
     rhs: Vec<DoubleDouble>,
     residual: Vec<DoubleDouble>,
 }
 
-/// Modified Gram–Schmidt with the right-hand side as one more column, which makes it backward stable.
+/// Orthogonalizes by modified Gram–Schmidt. The right-hand side is treated as one more column, which makes
+/// the method backward stable.
 fn orthogonalize(
     columns: Vec<Vec<DoubleDouble>>,
     y: Vec<DoubleDouble>,
@@ -140,7 +141,7 @@ fn orthogonalize(
     while !rest.is_empty() {
         let column = rest.remove(0);
         let length = dot(&column, &column).sqrt();
-        // Nothing but rounding is left of a column that the others span.
+        // Only rounding remains of a column that the others span.
         if length.value() < 1e3 * UNIT_ROUNDOFF {
             return Err(singular());
         }
@@ -161,7 +162,7 @@ fn orthogonalize(
 
 /// Solves R·x = b.
 fn back_substitute(r: &[Vec<DoubleDouble>], b: &[DoubleDouble]) -> Vec<DoubleDouble> {
-    // Unknowns from the last to the first.
+    // Unknowns are solved from the last to the first.
     let mut solved: Vec<DoubleDouble> = Vec::new();
     for (row, &right) in r.iter().zip(b).rev() {
         let known: DoubleDouble = row.iter().skip(1).zip(solved.iter().rev()).map(|(&r, &x)| r * x).sum();
@@ -173,7 +174,7 @@ fn back_substitute(r: &[Vec<DoubleDouble>], b: &[DoubleDouble]) -> Vec<DoubleDou
     solved
 }
 
-/// Lengths of the rows of R⁻¹: standard errors in units of the residual's standard deviation.
+/// Returns the lengths of the rows of R⁻¹: standard errors in units of the residual's standard deviation.
 fn inverse_row_lengths(r: &[Vec<DoubleDouble>]) -> Vec<DoubleDouble> {
     let size = r.len();
     let mut squares = vec![DoubleDouble::ZERO; size];
@@ -187,10 +188,11 @@ fn inverse_row_lengths(r: &[Vec<DoubleDouble>]) -> Vec<DoubleDouble> {
     squares.into_iter().map(DoubleDouble::sqrt).collect()
 }
 
-/// Ratio of the largest to the smallest singular value, by one-sided Jacobi rotations of R's rows.
+/// Returns the ratio of the largest to the smallest singular value, by one-sided Jacobi rotations of R's
+/// rows.
 ///
-/// Plain doubles suffice: the rotations find even small singular values to relative accuracy when the
-/// rows are graded, and nobody needs the condition number to more than a digit.
+/// Plain doubles suffice: if the rows are graded, the rotations find even small singular values to relative
+/// accuracy, and the condition number is not needed to more than one digit.
 fn condition_number(r: &[Vec<DoubleDouble>]) -> f64 {
     let size = r.len();
     let mut rows: Vec<Vec<f64>> = r
@@ -230,7 +232,7 @@ fn condition_number(r: &[Vec<DoubleDouble>]) -> f64 {
     longest / shortest
 }
 
-/// Digits that the forward-error bound leaves for the smallest coefficient that is not itself zero to
+/// Returns the digits that the forward-error bound leaves for the smallest coefficient that is not zero to
 /// within the bound.
 fn promise(
     condition: f64,
@@ -302,7 +304,7 @@ mod tests {
         );
     }
 
-    /// y = 1 + 2x + 3x² and residuals orthogonal to 1, x and x²: (−1, 3, −3, 1) on four even points.
+    /// y = 1 + 2x + 3x² with residuals orthogonal to 1, x and x²: (−1, 3, −3, 1) on four even points.
     #[test]
     fn a_parabola_by_hand() {
         let x = [0.0, 1.0, 2.0, 3.0];
@@ -334,7 +336,8 @@ mod tests {
         assert_eq!((fit.coefficients[0], fit.r_squared, fit.residual_std_dev), (0.0, 1.0, 0.0));
     }
 
-    /// Singular values of a product do not depend on the order of the columns, and for orthogonal ones they are equal.
+    /// Singular values of a product do not depend on the order of the columns, and for orthogonal ones they
+    /// are equal.
     #[test]
     fn condition_numbers_of_known_matrices() {
         let condition = |columns: &[&[f64]]| {
@@ -360,7 +363,8 @@ mod tests {
         }
     }
 
-    /// The bound as it is written: ten times the size, u, and κ + κ²·tan θ, over the smallest share that exceeds it.
+    /// Bound by its formula: ten times the size, u, and κ + κ²·tan θ, over the smallest share that exceeds
+    /// it.
     #[test]
     fn the_promise_is_the_bound_s() {
         let digits = |condition, tangent, coefficients: &[f64]| {
@@ -368,17 +372,17 @@ mod tests {
         };
         let bound = 70.0 * UNIT_ROUNDOFF * (1e10 + 1e20 * 0.5);
         assert!((digits(1e10, 0.5, &[3.0]) + bound.log10()).abs() < 1e-12);
-        // A coefficient of a hundredth of the norm has two digits fewer; one below the bound has no say.
+        // A coefficient of a hundredth of the norm has two digits fewer; one below the bound does not count.
         let two = digits(1e10, 0.5, &[1.0, 0.01]);
         assert!((two + bound.log10() - (-2.0 - 0.5 * 1.0001_f64.log10())).abs() < 1e-12, "{two}");
         assert_eq!(digits(1e10, 0.5, &[1.0, 1e-13]), digits(1e10, 0.5, &[1.0]));
         assert!((digits(1e10, 0.5, &[0.0, 0.0]) + bound.log10()).abs() < 1e-12);
-        // No double has more.
+        // No double has more digits.
         assert_eq!(digits(1.0, 0.0, &[1.0]), 15.65);
         assert_eq!(digits(1.0, 0.0, &[0.0]), 15.65);
     }
 
-    /// Where columns are nearly the same, residuals cost the digits that κ²·tan θ says.
+    /// Test of nearly equal columns: residuals cost the digits given by κ²·tan θ.
     #[test]
     fn residuals_cost_digits() {
         let near: Vec<f64> = (0..6).map(|x| 1.0 + 1e-9 * f64::from(x)).collect();
@@ -392,7 +396,7 @@ mod tests {
         let all = square(&mut (0..6).map(|x| f64::from(x) + f64::from(x * x % 3)));
         let tangent = (rest / (all - rest)).sqrt();
         let bound = 80.0 * UNIT_ROUNDOFF * scattered.condition.powi(2) * tangent;
-        // Both coefficients are of one size: the norm is √2 times either.
+        // Both coefficients have the same size, and the norm is √2 times either.
         let expected = -(bound * 2_f64.sqrt()).log10();
         assert!((scattered.promised_digits - expected).abs() < 1e-3, "{scattered:?} {expected}");
         assert!(fit(0.0).promised_digits > expected + 2.0);

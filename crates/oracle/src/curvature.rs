@@ -1,26 +1,26 @@
-//! Whether ln A is a line at all.
+//! Curvature of ln A, as a test of whether ln A is a line.
 
 use crate::certified::{Intercept, least_squares};
 use crate::error::OracleError;
 use envelope::Envelope;
 
-/// The quadratic term of ln A = a − λ·t + q·t²: zero for viscous damping.
+/// Quadratic term of ln A = a − λ·t + q·t²: zero for viscous damping.
 ///
-/// Dry friction bends ln A down (q < 0), drag that grows with speed bends it up (q > 0).
+/// Dry friction bends ln A down (q < 0); drag that grows with speed bends it up (q > 0).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curvature {
-    /// q, in 1/s².
+    /// Coefficient q, in 1/s².
     pub coefficient: f64,
-    /// Its standard error under independent residuals of one variance, in 1/s².
+    /// Standard error of q for independent residuals of one variance, in 1/s².
     pub std_error: f64,
-    /// Coefficient of determination with the term.
+    /// Coefficient of determination of the fit with the quadratic term.
     pub r_squared: f64,
 }
 
-/// Least squares of ln A on 1, t and t².
+/// Fits ln A by least squares on 1, t and t².
 ///
 /// # Errors
-/// [`OracleError`] where the envelope does not determine three coefficients to four digits.
+/// [`OracleError`] if the envelope does not determine three coefficients to four digits.
 pub fn curvature(envelope: &Envelope) -> Result<Curvature, OracleError> {
     let ones = vec![1.0; envelope.len()];
     let times = envelope.times_s();

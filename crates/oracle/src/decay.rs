@@ -1,51 +1,53 @@
-//! The decay rate of an envelope.
+//! Decay rate of an envelope.
 
 use crate::certified::{Intercept, least_squares};
 use crate::error::OracleError;
 use envelope::Envelope;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Least squares of ln A = ln A₀ − λ·t.
+/// Least-squares fit of ln A = ln A₀ − λ·t.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecayFit {
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: f64,
-    /// ln A₀, at the first peak.
+    /// ln A₀ at the first peak, with the amplitude in the record's unit.
     pub log_amplitude: f64,
-    /// Damping ratio ζ = λ/ω.
+    /// Damping ratio ζ by the envelope's definition, [`Envelope::damping_ratio`].
     pub zeta: f64,
-    /// Standard error of λ under independent residuals, in 1/s: of one variance, or of variances in the ratios that the
-    /// envelope states ([`Envelope::log_std_errors`]) and at least of those sizes.
+    /// Standard error of λ for independent residuals, in 1/s. Their variance is constant, or proportional to
+    /// the variances that the envelope states ([`Envelope::log_std_errors`]) and at least as large.
     pub std_error: f64,
-    /// `std_error` over that under residuals of one variance; 1 where the envelope states none.
+    /// Ratio of `std_error` to the standard error under constant variance; 1 if the envelope states no
+    /// variances.
     pub scatter_factor: f64,
     /// 95 % interval of λ by Student's t with n − 2 degrees of freedom, in 1/s.
     pub interval_95: [f64; 2],
-    /// Standard error of ζ, the frequency taken as known.
+    /// Standard error of ζ, with the frequency taken as exact.
     pub zeta_std_error: f64,
     /// Coefficient of determination.
     pub r_squared: f64,
     /// Two-norm condition number of the column-scaled design matrix.
     pub condition: f64,
-    /// Significant digits promised.
+    /// Significant digits promised for λ and ln A₀.
     pub promised_digits: f64,
-    /// Lag-one autocorrelation of the residuals. Near 0 the standard errors can be believed; near 1
-    /// the envelope is no exponential, and they are too small.
+    /// Lag-one autocorrelation of the residuals. Near 0 the standard errors are credible; near 1 the envelope
+    /// is not an exponential, and they are too small.
     pub residual_autocorrelation: f64,
 }
 
 impl DecayFit {
-    /// Value of the line ln A₀ − λ·t at a time in seconds after the first peak; the amplitude in the record's unit.
+    /// Returns the line ln A₀ − λ·t at a time in seconds after the first peak, with the amplitude in the
+    /// record's unit.
     #[must_use]
     pub fn log_amplitude_at(&self, time_s: f64) -> f64 {
         self.log_amplitude - self.decay_rate * time_s
     }
 }
 
-/// The decay rate of an envelope by closed-form least squares.
+/// Computes the decay rate of an envelope by closed-form least squares.
 ///
 /// # Errors
-/// [`OracleError`] where the envelope does not determine a line to four digits.
+/// [`OracleError`] if the envelope does not determine a line to four digits.
 pub fn decay_rate(envelope: &Envelope) -> Result<DecayFit, OracleError> {
     let ones = vec![1.0; envelope.len()];
     let columns = [ones.as_slice(), envelope.times_s()];
@@ -77,10 +79,11 @@ pub fn decay_rate(envelope: &Envelope) -> Result<DecayFit, OracleError> {
     })
 }
 
-/// Standard error of the unweighted least-squares slope where the scatter of ln A grows as the swing decays.
+/// Returns the standard error of the unweighted least-squares slope if the scatter of ln A grows as the swing
+/// decays.
 ///
-/// The variances v that the envelope states are raised in common by the factor RSS/E\[RSS\] where the residuals are larger
-/// than they promise (Birge 1932), never lowered. `None` where the envelope states none.
+/// The variances that the envelope states are raised by the common factor RSS/E\[RSS\] if the residuals are
+/// larger than expected (Birge 1932); they are never lowered. `None` if the envelope states none.
 fn uneven_std_error(envelope: &Envelope, residuals: &[f64]) -> Option<f64> {
     let variances = || envelope.log_std_errors().into_iter().flatten().map(|error| error * error);
     envelope.log_std_errors()?;
@@ -98,7 +101,7 @@ fn uneven_std_error(envelope: &Envelope, residuals: &[f64]) -> Option<f64> {
     error.is_finite().then_some(error)
 }
 
-/// Lag-one autocorrelation of residuals (their mean is 0); 0 where there are no residuals to speak of.
+/// Returns the lag-one autocorrelation of residuals with mean 0; 0 if all residuals are 0.
 fn autocorrelation(residuals: &[f64]) -> f64 {
     let square: f64 = residuals.iter().map(|r| r * r).sum();
     let product: f64 = residuals.iter().zip(residuals.iter().skip(1)).map(|(a, b)| a * b).sum();
@@ -116,7 +119,7 @@ mod tests {
         let envelope = Envelope::new(vec![0.0, 1.0, 2.0], vec![1.0, 1.0, 4.0], 6.0).unwrap();
         let fit = decay_rate(&envelope).unwrap();
         let error = 0.75_f64.sqrt();
-        // Student's t with one degree of freedom, Cauchy's: tan(0.475·π).
+        // Student's t with one degree of freedom is Cauchy's distribution: tan(0.475·π).
         let quantile = (0.475 * std::f64::consts::PI).tan();
         for (found, expected) in [
             (fit.decay_rate, -1.5),
@@ -134,7 +137,7 @@ mod tests {
         }
     }
 
-    /// t with n − 2 degrees of freedom: 2.306 with eight.
+    /// The quantile of t with n − 2 degrees of freedom is 2.306 for eight.
     #[test]
     fn ten_peaks_leave_eight_degrees_of_freedom() {
         let times: Vec<f64> = (0..10).map(f64::from).collect();
@@ -144,7 +147,7 @@ mod tests {
         assert!((half_width / fit.std_error - 2.306_004).abs() < 1e-5);
     }
 
-    /// Times −1, 0, 1 about their mean: the slope is half the difference of the ends.
+    /// With times −1, 0, 1 about their mean, the slope is half the difference of the ends.
     #[test]
     fn scatter_that_grows_widens_the_error_and_quiet_residuals_do_not_narrow_it() {
         let envelope = Envelope::new(vec![0.0, 1.0, 2.0], vec![1.0, 1.0, 4.0], 6.0).unwrap();
@@ -152,7 +155,7 @@ mod tests {
             |logs: Vec<f64>| decay_rate(&envelope.clone().with_log_std_errors(logs)).unwrap().std_error;
         // RSS = 3/2, and E[RSS] = 100/6 + 4/6 + 900/6.
         assert!((error(vec![10.0, 1.0, 30.0]) - 250_f64.sqrt()).abs() < 1e-9);
-        // A tenth of that each: RSS is more than E[RSS].
+        // With a tenth of each error, RSS is more than E[RSS].
         let factor: f64 = 1.5 / (0.01 / 6.0 + 0.000_4 / 6.0 + 0.09 / 6.0);
         assert!((error(vec![0.1, 0.01, 0.3]) - (factor * 0.025).sqrt()).abs() < 1e-9);
         assert_eq!(decay_rate(&envelope).unwrap().scatter_factor, 1.0);

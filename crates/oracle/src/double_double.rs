@@ -1,13 +1,13 @@
-//! Numbers of twice the double's precision: an unevaluated sum of two doubles.
+//! Numbers of twice a double's precision: unevaluated sums of two doubles.
 //!
-//! About 31 decimal digits (unit roundoff 2⁻¹⁰⁴ after a few operations). The algorithms are Dekker's
-//! and Knuth's error-free sum and, with a fused multiply-add, product.
+//! They have about 31 decimal digits (unit roundoff 2⁻¹⁰⁴ after a few operations). The algorithms are the
+//! error-free sum of Dekker and Knuth, and their product with a fused multiply-add.
 //!
 //! Reference: Dekker, Numerische Mathematik 18 (1971) 224; Hida, Li, Bailey, ARITH-15 (2001) 155.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An unevaluated sum `high + low` with |low| at most half a unit in the last place of `high`.
+/// Unevaluated sum `high + low` with |low| at most half a unit in the last place of `high`.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub(crate) struct DoubleDouble {
     high: f64,
@@ -20,7 +20,7 @@ pub(crate) const UNIT_ROUNDOFF: f64 = 4.93e-32; // 2^-104
 impl DoubleDouble {
     pub(crate) const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
-    /// The nearest double.
+    /// Returns the nearest double.
     pub(crate) fn value(self) -> f64 {
         self.high
     }
@@ -29,7 +29,7 @@ impl DoubleDouble {
         self.high == 0.0
     }
 
-    /// Square root by one step of Newton's method; 0 for what is not positive.
+    /// Returns the square root by one step of Newton's method; 0 for numbers that are not positive.
     pub(crate) fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::ZERO;
@@ -39,14 +39,14 @@ impl DoubleDouble {
         Self::from(guess) + Self::from(rest.high / (2.0 * guess))
     }
 
-    /// `a + b` where |a| ≥ |b|, exactly.
+    /// Returns `a + b` exactly, for |a| ≥ |b|.
     fn renormalize(a: f64, b: f64) -> Self {
         let high = a + b;
         Self { high, low: b - (high - a) }
     }
 }
 
-/// `a + b`, exactly.
+/// Returns `a + b` exactly, as rounded sum and error.
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
@@ -110,7 +110,7 @@ impl std::iter::Sum for DoubleDouble {
     }
 }
 
-/// Inner product.
+/// Returns the inner product.
 pub(crate) fn dot(a: &[DoubleDouble], b: &[DoubleDouble]) -> DoubleDouble {
     a.iter().zip(b).map(|(&a, &b)| a * b).sum()
 }
@@ -141,12 +141,12 @@ mod tests {
         assert_eq!(sum.value(), 1.0);
     }
 
-    /// Whole numbers whose sums, differences and products 106 bits hold are as exact here as among whole numbers.
+    /// Whole numbers whose sums, differences and products fit into 106 bits are computed exactly.
     #[test]
     fn whole_numbers_are_computed_with_exactly() {
         let mut generator = Seed::new(3).generator();
         for _ in 0..2000 {
-            // A number of up to 100 bits, in two parts that a double holds each.
+            // A number of up to 100 bits, in two parts that each fit into a double.
             let mut whole = |bits: u32| -> i128 {
                 let high = i128::from(generator.random_range(-(1_i64 << 52)..=1 << 52));
                 let low = i128::from(generator.random_range(-(1_i64 << 46)..=1 << 46));
@@ -168,7 +168,7 @@ mod tests {
         }
     }
 
-    /// What a number in two parts times such a number is, to 104 bits.
+    /// Products, quotients and roots of numbers in two parts are accurate to 104 bits.
     #[test]
     fn long_products_quotients_and_roots_are_good_to_thirty_digits() {
         let mut generator = Seed::new(4).generator();

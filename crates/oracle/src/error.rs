@@ -1,9 +1,9 @@
-//! Why the oracle does not answer.
+//! Errors of the oracle.
 
 use crate::FEWEST_DIGITS;
 use thiserror::Error;
 
-/// Why the oracle does not answer.
+/// Reason why the oracle gives no answer.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum OracleError {
     /// The conditioning leaves too few digits.
@@ -13,17 +13,17 @@ pub enum OracleError {
          shift and scale them"
     )]
     IllConditioned {
-        /// Digits that can be promised.
+        /// Number of digits that can be promised.
         promised: f64,
         /// Condition number of the column-scaled design matrix.
         condition: f64,
     },
-    /// Fewer rows than columns, or just as many: no residual is left to tell an error from.
+    /// At most as many rows as columns: no residual is left to estimate errors from.
     #[error("{rows} points do not determine {columns} coefficients and their errors")]
     TooFewRows {
-        /// Rows of the design matrix.
+        /// Number of rows of the design matrix.
         rows: usize,
-        /// Columns of the design matrix.
+        /// Number of columns of the design matrix.
         columns: usize,
     },
     /// Columns of different lengths, or none.
@@ -31,12 +31,12 @@ pub enum OracleError {
     Shape {
         /// Number of the column, from 1.
         column: usize,
-        /// Entries found.
+        /// Number of entries found.
         found: usize,
-        /// Entries expected.
+        /// Number of entries expected.
         expected: usize,
     },
-    /// A number that is infinite or no number.
+    /// A number is infinite or NaN.
     #[error("row {row} holds a number that is not finite")]
     NotFinite {
         /// Number of the row, from 1.
@@ -47,10 +47,10 @@ pub enum OracleError {
     Weight {
         /// Number of the row, from 1.
         row: usize,
-        /// The weight.
+        /// Value of the weight.
         weight: f64,
     },
-    /// Bounds with nothing between them, or not one pair for each parameter.
+    /// Bounds have nothing between them, or there is not one pair for each parameter.
     #[error("parameter {parameter} has no room between its bounds {low} and {high}")]
     Bounds {
         /// Number of the parameter, from 1.
@@ -60,10 +60,10 @@ pub enum OracleError {
         /// Upper bound.
         high: f64,
     },
-    /// linfa refused.
+    /// linfa returned an error.
     #[error("linfa-linear: {problem}")]
     Library {
-        /// What it says.
+        /// Message of linfa.
         problem: String,
     },
 }

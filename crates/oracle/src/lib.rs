@@ -1,10 +1,11 @@
-//! Closed-form least squares with certified digits: what every estimator is compared with.
+//! Closed-form least squares with certified digits: the reference for every estimator.
 //!
-//! The oracle computes in double-double arithmetic of its own (about 31 decimal digits), states how
-//! many digits of its answer the conditioning of the problem leaves, and refuses to answer where fewer
-//! than four remain. It shares the envelope with the estimators and no arithmetic.
+//! The oracle computes in its own double-double arithmetic (about 31 decimal digits). It states how many
+//! digits of its answer the conditioning of the problem leaves, and refuses to answer if fewer than four
+//! remain. It shares the envelope with the estimators, but no arithmetic.
 //!
-//! Beside it stand the paper's eleven [`classical`] methods in plain double precision, and linfa-linear.
+//! The crate also contains the paper's eleven [`classical`] methods in plain double precision, and
+//! linfa-linear.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -1,4 +1,4 @@
-//! The same line by linfa-linear: a second opinion from code that is not ours.
+//! Least-squares line by linfa-linear: a check with independent code.
 
 use crate::error::OracleError;
 use envelope::Envelope;
@@ -7,10 +7,10 @@ use linfa::traits::Fit;
 use linfa_linear::LinearRegression;
 use ndarray::{Array1, Array2};
 
-/// Decay rate in 1/s and ln A₀ by `linfa_linear::LinearRegression`, in plain double precision.
+/// Fits the decay rate in 1/s and ln A₀ by `linfa_linear::LinearRegression`, in plain double precision.
 ///
 /// # Errors
-/// [`OracleError::Library`] with what linfa says.
+/// [`OracleError::Library`] with the message of linfa.
 pub fn linfa_decay_rate(envelope: &Envelope) -> Result<(f64, f64), OracleError> {
     let refused = |problem: String| OracleError::Library { problem };
     let times = Array2::from_shape_vec((envelope.len(), 1), envelope.times_s().to_vec())

@@ -1,4 +1,4 @@
-//! Damping ratios of simulated exponential decays whose truth is known: how often two standard errors hold it.
+//! Coverage test on simulated exponential decays: two standard errors of the damping ratio hold the truth.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)]
 
@@ -9,20 +9,20 @@ use record::{Clock, ClockChoice, Quantity, Record};
 use seed::Seed;
 use std::f64::consts::TAU;
 
-/// As the configuration has them by default.
+/// Default of the configuration.
 const RECOMMENDED: RecommendedPipeline = RecommendedPipeline::DEFAULT;
 
-/// A free decay of a linear oscillator and how it is observed.
+/// Free decay of a linear oscillator, with its observation.
 #[derive(Debug)]
 struct Case {
     zeta: f64,
-    /// Undamped, in rad/s.
+    /// Undamped natural frequency, in rad/s.
     omega: f64,
     rate_hz: f64,
     seconds: f64,
-    /// Standard deviation, in amplitudes.
+    /// Standard deviation, as a share of the first amplitude.
     noise: f64,
-    /// Step of the sensor, in amplitudes; 0 for none.
+    /// Step of the sensor, as a share of the first amplitude; 0 for none.
     quantum: f64,
     phase: f64,
     offset: f64,
@@ -47,7 +47,7 @@ fn draw(generator: &mut impl Rng) -> Case {
         zeta,
         omega,
         noise,
-        // Some twelve to two hundred samples a period.
+        // About 12 to 200 samples per period.
         rate_hz: omega / TAU * between(generator, 12.0, 200.0),
         // Never shorter than five periods.
         seconds: seconds.max(5.0 * TAU / omega),
@@ -71,7 +71,7 @@ fn record(case: &Case, generator: &mut impl Rng) -> Record {
     Record::new(times, values, None, Quantity::Position, "rad").unwrap()
 }
 
-/// Distance of ζ from the truth in standard errors; `None` where the record has no envelope.
+/// Returns the deviation of ζ from the truth in standard errors; `None` if the record has no envelope.
 fn deviation(case: &Case, generator: &mut impl Rng) -> Option<f64> {
     let record = record(case, generator);
     let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
@@ -80,7 +80,7 @@ fn deviation(case: &Case, generator: &mut impl Rng) -> Option<f64> {
     Some((fit.zeta - case.zeta) / fit.zeta_std_error)
 }
 
-/// Deviations of that many cases.
+/// Returns the deviations of a number of cases.
 fn deviations(cases: usize) -> Vec<f64> {
     let root = Seed::new(0).child("exponentials");
     let one = |number: usize| {
@@ -102,7 +102,7 @@ fn two_standard_errors_hold_the_truth_of_simulated_exponentials() {
     assert!(held(&found) >= 186, "{} of 200", held(&found));
 }
 
-/// 95.4 % is what two standard errors of a normal number hold.
+/// Two standard errors of a normal number hold the truth in 95.4 % of the cases.
 #[test]
 #[ignore = "2000 records take half a minute"]
 fn standard_errors_are_neither_too_small_nor_too_large() {

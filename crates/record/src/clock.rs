@@ -1,9 +1,9 @@
-//! Which clock to believe.
+//! Choice of the clock of a record: the stamps, or the sample index.
 //!
-//! A logger's stamps say when the host received a sample, not when the sensor took it. A sensor that
-//! samples by its own oscillator takes its samples evenly; the regression of the stamps on the sample
-//! index then gives the rate far better than any two stamps. Where samples were lost, or the sensor is
-//! polled at odd times, the index knows nothing and the stamps are all there is.
+//! A logger's stamps are the times at which the host received the samples, not those at which the sensor took
+//! them. A sensor with its own oscillator samples evenly; a regression of the stamps on the sample index then
+//! gives the rate far better than any two stamps. If samples were lost, or the sensor is polled at irregular
+//! times, the index carries no time information and only the stamps remain.
 
 use crate::error::Fault;
 use crate::line::Line;
@@ -13,38 +13,38 @@ use crate::stamps::{StampStatistics, stamp_rounding, statistics};
 use crate::words::{counted, two_digits};
 use serde::{Deserialize, Serialize};
 
-/// What a configuration asks for.
+/// Clock requested by a configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClockChoice {
-    /// The stamps as written.
+    /// Stamps as written.
     Host,
-    /// Even in the sample index, rate by regression; rows without a value count.
+    /// Even in the sample index, with the rate from a regression; rows without a value are counted.
     UniformIndex,
-    /// Whichever the stamps and the values support.
+    /// The clock that the stamps and the values support.
     #[default]
     Auto,
 }
 
 impl ClockChoice {
-    /// Every choice's name as configurations write it.
+    /// Names of all choices in configurations.
     pub const NAMES: &'static [&'static str] = &["host", "uniform-index", "auto"];
 }
 
-/// The clock in force.
+/// Clock in force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClockKind {
-    /// The stamps as written.
+    /// Stamps as written.
     Host,
     /// Even in the sample index.
     UniformIndex,
-    /// Even in the sample index once lost samples are counted.
+    /// Even in the sample index after lost samples are counted.
     IndexWithGaps,
 }
 
 impl ClockKind {
-    /// The name as results write it.
+    /// Returns the name used in results.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -55,49 +55,52 @@ impl ClockKind {
     }
 }
 
-/// A clock for a record: a time for every sample, and why these times.
+/// Clock of a record: a time for every sample and the reason for these times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
-    /// Which clock it is.
+    /// Kind of the clock.
     pub kind: ClockKind,
-    /// Why it is in force: a sentence.
+    /// Reason for the choice of the clock, as a sentence.
     pub reason: String,
-    /// Time of every sample, in seconds, on the stamps' own origin.
+    /// Time of every sample, in seconds, with the same origin as the stamps.
     pub times_s: Vec<f64>,
-    /// Sampling rate by regression of stamps on the sample index, lost samples counted where the stamps tell
-    /// how many, in hertz; stated for every clock.
+    /// Sampling rate by regression of the stamps on the sample index, in hertz. Lost samples are counted if
+    /// the stamps show their number. Given for every kind of clock.
     pub sample_rate_hz: f64,
-    /// Its standard error, widened for the autocorrelation of the stamps' deviations, in hertz.
+    /// Standard error of the sampling rate, widened for the autocorrelation of the stamps' deviations, in
+    /// hertz.
     pub sample_rate_std_error_hz: f64,
-    /// What the decision rests on.
+    /// Statistics of the stamps on which the decision is based.
     pub statistics: StampStatistics,
 }
 
 impl Clock {
-    /// Lays a clock over a record's stamps. Linear in the number of samples.
+    /// Determines the clock of a record. Linear in the number of samples.
     ///
-    /// The regression uses the last sample of each group of equal stamps only: it waited least for the
-    /// host, so its stamp is the least late. Samples are numbered by their rows, so that rows without a value count.
+    /// The regression uses only the last sample of each group of equal stamps: it waited least for the host,
+    /// so its stamp is the least late. Samples are numbered by their rows, so rows without a value are
+    /// counted.
     ///
     /// `Auto` decides in this order:
-    /// 1. repeated stamps: two samples cannot be taken at once, so the stamps are receive times; even
-    ///    in the index, with lost samples counted where groups come later than their samples account for;
-    /// 2. gaps: samples are missing, the index is no clock; host, unless the values run more smoothly (as in 5) on the
-    ///    index with the lost samples counted. Among steps of rounded or jittered stamps a loss may be no long one, so that
-    ///    only counting finds it: below, too, lost samples are counted in an index that is even;
-    /// 3. an even clock reproduces every stamp to a millionth of an interval, or to the step the stamps are rounded to:
-    ///    even in the index;
-    /// 4. an even clock and a parabola do: the logger's clock and the sensor's change their rates against one another,
-    ///    and a sensor samples by its own; even in the index;
-    /// 5. the values themselves: on the clock they were taken by, five neighbors lie closer to a cubic.
-    ///    Where one clock is better by more than 2.33 standard errors (1 % of chance), that one;
-    /// 6. otherwise host: what is written stands until something speaks against it.
+    /// 1. Repeated stamps: two samples cannot be taken at once, so the stamps are receive times. The clock is
+    ///    even in the index, with lost samples counted where groups come later than their samples explain.
+    /// 2. Gaps: samples are missing, so the index is no clock. The host clock is used, unless the values run
+    ///    more smoothly (as in 5) on the index with the lost samples counted. Among steps of rounded or
+    ///    jittered stamps a lost sample need not make a long step, and only counting finds it; the rules
+    ///    below therefore count lost samples in an even index too.
+    /// 3. An even clock reproduces every stamp to a millionth of an interval, or to the step to which the
+    ///    stamps are rounded: even in the index.
+    /// 4. An even clock plus a parabola does so: the rates of the logger's and the sensor's clock drift
+    ///    against each other, and a sensor samples by its own clock; even in the index.
+    /// 5. The values: on the clock by which they were taken, five neighbors lie closer to a cubic. If one
+    ///    clock is better by more than 2.33 standard errors (1 % by chance), it is used.
+    /// 6. Otherwise the host clock: the stamps are used as written unless there is evidence against them.
     ///
     /// # Errors
-    /// [`Fault::NoTimePasses`] where all stamps are equal.
+    /// [`Fault::NoTimePasses`] if all stamps are equal.
     pub fn new(record: &Record, choice: ClockChoice) -> Result<Self, Fault> {
         let stamps = record.stamps_s();
-        // A record has samples: checked when it was made.
+        // Every record has samples; `Record::new` checks it.
         let first = stamps.first().copied().unwrap_or_default();
         let rows = record.row_numbers();
         let ends = group_ends(stamps, &rows);
@@ -142,12 +145,13 @@ impl Clock {
         })
     }
 
-    /// Time in seconds and input of each of the record's [`Record::input_rows`]: by its stamp where stamps are believed, else by the
-    /// number of its row between those of the samples beside it.
+    /// Returns the time in seconds and the input of each of the record's [`Record::input_rows`]. The time is
+    /// the row's stamp if the clock is the host's, and is otherwise interpolated by row number between the
+    /// neighboring samples.
     #[must_use]
     pub fn inputs_between(&self, record: &Record) -> Vec<(f64, f64)> {
         debug_assert_eq!(self.times_s.len(), record.len(), "a clock has a time for every sample");
-        // Where rows are not numbered none lies between.
+        // Without numbered rows there are no rows between samples.
         let rows = record.rows().unwrap_or_default();
         let by_number = |own: &InputRow| {
             let [(first, from), (last, to)] = beside(rows, &self.times_s, own.row)?;
@@ -155,17 +159,17 @@ impl Clock {
         };
         let time = |own: &InputRow| match self.kind {
             ClockKind::Host => own.stamp_s,
-            // Between two samples, as the record has checked.
+            // Always found: the record has checked that the row lies between two samples.
             _ => by_number(own).unwrap_or(own.stamp_s),
         };
         record.input_rows().iter().map(|own| (time(own), own.input)).collect()
     }
 
-    /// Time of the first sample, in seconds.
+    /// Returns the time of the first sample, in seconds.
     #[must_use]
     pub fn start_s(&self) -> f64 {
         debug_assert!(!self.times_s.is_empty(), "a clock lies over two samples at least");
-        // Never absent: asserted above.
+        // Always present: asserted above.
         self.times_s.first().copied().unwrap_or(0.0)
     }
 }
@@ -173,7 +177,7 @@ impl Clock {
 fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, String) {
     let rate = 1.0 / line.slope;
     let preference = found.preference_for_even;
-    // Whatever the even clock was judged by, it was judged with the lost samples counted.
+    // The even clock was tested with lost samples counted, so it includes them.
     let even = |reason: String| match found.lost {
         0 => (ClockKind::UniformIndex, reason),
         lost => (ClockKind::IndexWithGaps, format!("{reason}; {} lost", counted(lost, "sample"))),
@@ -248,14 +252,16 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     (ClockKind::Host, reason)
 }
 
-/// Distance from an even clock, in sampling intervals, up to which stamps are even, whatever the values say.
+/// Largest distance from an even clock, in sampling intervals, at which stamps count as even, whatever the
+/// values show.
 const EVEN: f64 = 1e-6;
 
-/// Standard errors that a preference must have: 1 % of chance, one-sided.
+/// Number of standard errors that a preference must exceed: 1 % by chance, one-sided.
 const SIGNIFICANT: f64 = 2.33;
 
-/// Row number and stamp of the last sample of each group of equal stamps. The record's last group may be
-/// cut off, so its last sample need not have been the least late; with many groups it does not matter.
+/// Returns the row number and the stamp of the last sample of each group of equal stamps. The record's last
+/// group may be cut off, so that its last sample need not be the least late; with many groups this does not
+/// matter.
 fn group_ends(stamps: &[f64], rows: &[f64]) -> Vec<(f64, f64)> {
     let following = stamps.iter().skip(1).map(Some).chain([None]);
     stamps
@@ -272,7 +278,7 @@ mod tests {
     use super::{Clock, ClockChoice, ClockKind};
     use crate::record::{Quantity, Record};
 
-    /// The clock of a motion that was seen at the given true times.
+    /// Returns the clock of a motion that was sampled at the given true times.
     fn auto_of(stamps: Vec<f64>, times: &[f64]) -> Clock {
         let values = times.iter().map(|t| (20.0 * t).sin()).collect();
         let record = Record::new(stamps, values, None, Quantity::Position, "rad").unwrap();
@@ -284,7 +290,7 @@ mod tests {
         auto_of(stamps, &times)
     }
 
-    /// Pseudo-random numbers in −0.5..0.5 without a generator.
+    /// Returns pseudo-random numbers in −0.5..0.5 without a generator.
     fn noise(index: usize) -> f64 {
         (index as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5
     }
@@ -307,7 +313,7 @@ mod tests {
         assert!((clock.sample_rate_hz - 1e3 / 10.039).abs() < 1e-3);
     }
 
-    /// At 625 Hz a lost sample makes a step of 3.2 ms, which is no long one among steps of 1 and 2 ms;
+    /// A lost sample at 625 Hz makes a step of 3.2 ms, which is not a long one among steps of 1 and 2 ms;
     /// counting finds it.
     #[test]
     fn a_loss_that_rounded_stamps_hide_from_the_steps_is_in_the_times() {
@@ -323,7 +329,7 @@ mod tests {
         assert!(wrong.fold(0.0, f64::max) < 0.2e-3, "a loss of 1.6 ms is in none of the times");
     }
 
-    /// The same on a logger's clock that drifts: losses are counted in the even clock that the parabola is judged from.
+    /// Losses with a drifting logger clock are counted in the even clock from which the parabola is fitted.
     #[test]
     fn such_a_loss_is_in_the_times_of_a_clock_that_drifts() {
         let numbers: Vec<usize> = (0..12_000).filter(|i| i % 1700 != 850).collect();
@@ -336,12 +342,12 @@ mod tests {
         assert!(clock.reason.contains("7 samples lost"), "{}", clock.reason);
     }
 
-    /// Where jitter alone makes many steps long, few losses among them are no gaps; counting finds these too.
+    /// Losses among steps that jitter alone makes long are no gaps; counting finds them too.
     #[test]
     fn a_loss_among_steps_that_jitter_made_long_is_in_the_times() {
         let numbers: Vec<usize> = (0..3000).filter(|i| i % 900 != 450).collect();
         let times: Vec<f64> = numbers.iter().map(|i| *i as f64 * 0.01).collect();
-        // A sum of four has some large ones, which a single one of the same variance has not.
+        // A sum of four uniform numbers has larger outliers than one uniform number of the same variance.
         let jitter = |i: usize| (0..4).map(|part| noise(4 * i + part)).sum::<f64>();
         let stamps = numbers.iter().map(|i| *i as f64 * 0.01 + 0.0024 * jitter(*i)).collect();
         let clock = auto_of(stamps, &times);
@@ -370,7 +376,8 @@ mod tests {
         assert!(clock.reason.contains("when they say"), "{}", clock.reason);
     }
 
-    /// Regression: a rate that is stated gives stamps that doubles cannot hold exactly; the values have no say in that.
+    /// Regression: a stated rate gives stamps that doubles cannot hold exactly; the values must not affect
+    /// the decision.
     #[test]
     fn stamps_from_a_stated_rate_are_even() {
         let clock = auto((0..2000).map(|i| i as f64 / 610.35).collect());

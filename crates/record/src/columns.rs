@@ -1,38 +1,41 @@
-//! Columns of a `csv` file as options name them.
+//! Choice of the columns of a `csv` file by options.
 
 use crate::unit::{TimeUnit, Unit};
 use serde::{Deserialize, Serialize};
 
-/// Which columns to read and how. What is left open is found from the file and kept in [`Reading`](crate::Reading).
+/// Columns to read and their interpretation. Settings that are left open are found from the file and stored
+/// in [`Reading`](crate::Reading).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CsvColumns {
-    /// The time column.
+    /// Name of the time column.
     pub time: Option<String>,
-    /// The observed column.
+    /// Name of the observed column.
     pub value: Option<String>,
-    /// The measured input; absent where there is none.
+    /// Name of the column of the measured input, or `none` for no input; by default found from the header.
     pub input: Option<String>,
-    /// Unit of the observed column; left open, what the header says, else the SI unit of what moves.
+    /// Unit of the observed column; by default that of the header, else the SI unit of the coordinate.
     pub unit: Option<Unit>,
-    /// Unit of the input; left open, what the header says, else as it is.
+    /// Unit of the input; by default that of the header, else none: the numbers are used as they are.
     pub input_unit: Option<Unit>,
-    /// Unit of the time column; left open, what the header or the numbers say, else seconds.
+    /// Unit of the time column; by default that of the header or the one that the numbers imply, else
+    /// seconds.
     pub time_unit: Option<TimeUnit>,
-    /// Rate at which to lay out a file without a time column, in hertz; a statement to be checked where there is one.
+    /// Sampling rate in hertz. It places the samples of a file without a time column; in a file with one it
+    /// is a statement to be checked.
     pub sample_rate_hz: Option<f64>,
-    /// Lines to read; left open, all.
+    /// Filter on the lines to read; by default all lines are read.
     pub filter: Option<Filter>,
-    /// What cells without a number mean.
+    /// Treatment of cells without a number.
     pub missing: Missing,
 }
 
-/// Lines with a value in a column, written `COLUMN=VALUE`.
+/// Filter on lines with a certain value in a column, written `COLUMN=VALUE`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Filter {
-    /// The column.
+    /// Name of the column.
     pub column: String,
-    /// The value that its cells have.
+    /// Value of the column's cells in the chosen lines.
     pub value: String,
 }
 
@@ -53,27 +56,27 @@ impl From<Filter> for String {
     }
 }
 
-/// What a cell without a number (empty, `NaN`, `NA`, `null`, `-`, infinite) means in a column that is read.
+/// Treatment of a cell without a number (empty, `NaN`, `NA`, `null`, `-`, infinite) in a column that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Missing {
-    /// A gap: the line is left out and its place in time stays empty; where the observed cell alone is missing its input is
-    /// kept ([`Record::input_rows`](crate::Record::input_rows)). Clocks that are even in the index count it, and
-    /// samples on either side of it are no neighbors.
+    /// Gap: the line is left out and its place in time stays empty. If only the observed cell is missing, the
+    /// input is kept ([`Record::input_rows`](crate::Record::input_rows)). Clocks that are even in the index
+    /// count the line, and samples on its two sides are not neighbors.
     #[default]
     Segment,
-    /// A line that is not there, as if the file had never had it: in a file that is laid out at a rate, and on a clock that
-    /// is even in the index, the following samples move up. Stamps stay as written.
+    /// Deletion: the line is treated as if the file had never had it. In a file without stamps, and on a
+    /// clock that is even in the index, the following samples move up. Stamps stay as written.
     Drop,
-    /// A fault.
+    /// Error: the file is refused.
     Refuse,
 }
 
 impl Missing {
-    /// Every choice's name as configurations write it.
+    /// Names of all choices in configurations.
     pub const NAMES: &'static [&'static str] = &["segment", "drop", "refuse"];
 
-    /// The name as configurations write it.
+    /// Returns the name used in configurations.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -1,14 +1,15 @@
-//! Lines that a file holds twice, as exports that were put together do.
+//! Detection of lines that a file contains twice, as merged exports do.
 
 use std::collections::BTreeSet;
 
-/// Which samples are copies of the one before, stamp and cells alike. None where any stamp repeats with other cells: samples that
-/// arrive in bursts share their stamps, and at rest their values too.
+/// Returns the indices of samples that repeat the previous sample, stamp and cells alike. Returns an empty
+/// set if any stamp repeats with different cells: samples that arrive in bursts share their stamps, and at
+/// rest also their values.
 pub(crate) fn copies(stamps: &[f64], values: &[Option<f64>], input: &[f64]) -> BTreeSet<usize> {
     let repeats = |at: &usize| stamps.get(*at) == stamps.get(at - 1);
     let is_copy = |at: &usize| values.get(*at) == values.get(at - 1) && input.get(*at) == input.get(at - 1);
     let repeated: BTreeSet<usize> = (1..stamps.len()).filter(repeats).collect();
-    // A clock that stands still writes no copies.
+    // A clock that stands still does not indicate copies.
     let stands_still = repeated.len() + 1 >= stamps.len();
     if !stands_still && repeated.iter().all(is_copy) { repeated } else { BTreeSet::new() }
 }

@@ -1,4 +1,4 @@
-//! The `csv` format: a header with column names, then numbers.
+//! Reader of the `csv` format: a header with column names, then numbers.
 
 use crate::columns::{Filter, Missing};
 use crate::copies::copies;
@@ -16,22 +16,22 @@ use crate::unit::{TimeUnit, Unit};
 use crate::words::counted;
 use std::collections::BTreeSet;
 
-/// Rows from which the kind of a column is told.
+/// Number of rows from which the kind of a column is determined.
 const TOLD_FROM: usize = 200;
-/// Most values of a column that tells series apart.
+/// Largest number of values of a column that distinguishes series.
 const MOST_SERIES: usize = 40;
-/// Names of columns that tell series apart.
+/// Names of columns that distinguish series.
 const SERIES: &[&str] =
     &["joint", "axis", "motor", "channel", "sensor", "body", "link", "servo", "name", "id"];
 
-/// The table of a text with its columns told.
+/// Table of a text, with the headings and kinds of its columns.
 pub(crate) struct Table<'a> {
     layout: Layout<'a>,
     pub(crate) columns: Vec<Column>,
 }
 
 impl<'a> Table<'a> {
-    /// Finds out how a text is written and what its columns hold.
+    /// Determines the dialect of a text and the kinds of its columns.
     pub(crate) fn new(text: &'a str) -> Result<Self, Fault> {
         let layout = dialect::layout(text)?;
         let below = |at: usize| layout.units.as_ref().and_then(|units| units.get(at)).copied();
@@ -62,7 +62,8 @@ impl<'a> Table<'a> {
         self.columns.get(at).map_or("", |column| column.heading.title.as_str())
     }
 
-    /// The values of a column in the order of their first line; none where there are too many to tell series apart.
+    /// Returns the values of a column in the order of their first lines, or no values if there are too many
+    /// to distinguish series.
     fn values(&self, at: usize) -> Vec<&'a str> {
         let (mut known, mut found) = (BTreeSet::new(), Vec::new());
         for (_, row) in &self.layout.rows {
@@ -78,7 +79,8 @@ impl<'a> Table<'a> {
         found
     }
 
-    /// The column whose values tell series apart and of which none was chosen. Where `any`, whatever text it holds.
+    /// Returns the fault of a column that distinguishes series of which none was chosen. With `any`, every
+    /// text column counts.
     fn series(&self, any: bool) -> Option<Fault> {
         let tells = |column: &Column| {
             let words = column.heading.words.iter();
@@ -100,7 +102,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The lines that a filter leaves.
+    /// Returns the lines that a filter keeps.
     fn chosen(&self, filter: Option<&(usize, &Filter)>) -> Result<Vec<(u64, Vec<&'a str>)>, Fault> {
         let rows = self.layout.rows.iter().map(|(line, row)| (*line, self.layout.dialect.split(row)));
         let Some((at, filter)) = filter else { return Ok(rows.collect()) };
@@ -117,14 +119,14 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The samples of a table, before their stamps are in seconds.
+/// Samples of a table before their stamps are converted to seconds.
 #[derive(Default)]
 struct Samples {
     lines: Vec<u64>,
-    /// Numbers of the lines among those chosen.
+    /// Numbers of the lines among the chosen lines.
     numbers: Vec<usize>,
     stamps: Vec<Stamp>,
-    /// None on a line that lacks the observed cell alone: its input acts all the same.
+    /// `None` on a line that lacks only the observed cell: its input still acts.
     values: Vec<Option<f64>>,
     input: Vec<f64>,
     missing_cells: usize,
@@ -135,21 +137,21 @@ struct Samples {
 /// Columns that are read.
 struct Chosen {
     time: Option<Pick>,
-    /// The column of nanoseconds beside one of seconds.
+    /// Column of nanoseconds that belongs to a time column of seconds.
     nanoseconds: Option<usize>,
     value: Pick,
     input: Option<Pick>,
 }
 
 impl Chosen {
-    /// Their numbers, the value's first.
+    /// Returns the indices of the columns, the observed column first.
     fn columns(&self) -> Vec<usize> {
         let picks = [Some(self.value), self.input, self.time].map(|pick| pick.map(|pick| pick.at));
         picks.into_iter().chain([self.nanoseconds]).flatten().collect()
     }
 }
 
-/// Reads the text of a file of columns.
+/// Reads the text of a `csv` file.
 pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> {
     let asked = &options.columns;
     let mut statements = Statements::default();
@@ -230,7 +232,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
             continue;
         };
         let pushed = parsed.push(*line, *stamp, value * unit.to_si(), input);
-        // Stamps that run backward may be those of several series.
+        // Stamps that run backward may belong to several interleaved series.
         pushed.map_err(|fault| filter.is_none().then(|| table.series(true)).flatten().unwrap_or(fault))?;
         numbers.push(number);
     }
@@ -242,7 +244,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     Ok(parsed)
 }
 
-/// A sentence where lines were left out that stand in the file twice.
+/// Returns a sentence if duplicate lines were left out.
 fn copied(count: usize) -> Option<String> {
     let which = if count == 1 { "repeats" } else { "repeat" };
     (count > 0).then(|| {
@@ -263,7 +265,8 @@ fn told(stated: bool, assumed: bool) -> &'static str {
     }
 }
 
-/// The column of nanoseconds that belongs to one of seconds: `header.stamp.secs`, `header.stamp.nsecs`.
+/// Returns the column of nanoseconds that belongs to a column of seconds: `header.stamp.secs`,
+/// `header.stamp.nsecs`.
 fn nanoseconds(columns: &[Column], time: usize) -> Option<usize> {
     let title = |column: &Column| column.heading.title.to_lowercase();
     let own = title(columns.get(time)?);
@@ -284,7 +287,7 @@ fn read(
     let width = table.columns.len();
     let mut samples = Samples::default();
     let columns = chosen.columns();
-    // A value column is always among them.
+    // The observed column is always among them.
     let needed = columns.iter().max().map_or(0, |at| at + 1);
     for (number, (line, row)) in rows.iter().enumerate() {
         if row.len() < needed {
@@ -299,7 +302,7 @@ fn read(
         let read =
             |at: usize| dialect.number(cell(at)).ok_or_else(|| not_a_number(table, *line, at, cell(at)));
         if let Some(first) = missing.first() {
-            // A word in the other cells is a fault all the same.
+            // A word in one of the other cells is still a fault.
             columns.iter().filter(|at| !missing.contains(at)).try_for_each(|at| {
                 let known = Some(*at) == chosen.time.map(|pick| pick.at) || read(*at).is_ok();
                 if known { Ok(()) } else { Err(not_a_number(table, *line, *at, cell(*at))) }
@@ -336,7 +339,7 @@ fn not_a_number(table: &Table<'_>, line: u64, at: usize, cell: &str) -> Fault {
     Fault::NotANumber { line, column: table.title(at).to_owned(), text: cell.chars().take(40).collect() }
 }
 
-/// Stamps in seconds, how the time column was read, and what is odd about it.
+/// Returns stamps in seconds, the reading of the time column, and findings about it.
 fn stamps(
     table: &Table<'_>,
     chosen: &Chosen,
@@ -385,7 +388,7 @@ fn stamps(
     (seconds, Some(reading), findings.into_iter().collect())
 }
 
-/// A sentence where an option states another unit than the header does.
+/// Returns a sentence if an option states a different unit than the header.
 fn contradiction(heading: &Heading, [asked, written]: [Option<&str>; 2], key: &str) -> Option<String> {
     let (asked, written) = asked.zip(written).filter(|(asked, written)| asked != written)?;
     Some(format!(
@@ -394,7 +397,7 @@ fn contradiction(heading: &Heading, [asked, written]: [Option<&str>; 2], key: &s
     ))
 }
 
-/// A sentence where the header states a unit that is none of those that are known.
+/// Returns a sentence if the header states an unknown unit.
 fn unknown_unit(heading: &Heading, assumed: bool, taken: &str, key: &str) -> Option<String> {
     let unit = heading.unknown.as_ref().filter(|_| assumed)?;
     Some(format!(
@@ -404,7 +407,7 @@ fn unknown_unit(heading: &Heading, assumed: bool, taken: &str, key: &str) -> Opt
     ))
 }
 
-/// A sentence where stamps that are taken to be seconds make a rate that hardly any logger has.
+/// Returns a sentence if stamps assumed to be in seconds imply a sampling rate that hardly any logger has.
 fn odd_rate(stamps: &[f64]) -> Option<String> {
     let mut steps: Vec<f64> =
         stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next - one).collect();
@@ -425,7 +428,7 @@ fn odd_rate(stamps: &[f64]) -> Option<String> {
     ))
 }
 
-/// Factor of the input to SI and how it was read.
+/// Returns the input's factor to SI and its reading.
 fn input_scale(
     table: &Table<'_>,
     input: Option<Pick>,
@@ -436,7 +439,7 @@ fn input_scale(
     let Some(input) = input else { return (1.0, None) };
     let heading = heading(table, input.at);
     let stated = options.columns.input_unit.or(heading.unit());
-    // A commanded position is written in the unit of the position beside it.
+    // A commanded position has the unit of the position in the same file.
     let commands =
         ["command", "cmd", "setpoint", "target", "desired", "action"].iter().any(|word| heading.has(word));
     let unit = stated.or(Some(observed).filter(|_| commands));
@@ -465,9 +468,9 @@ fn input_scale(
     (unit.map_or(1.0, Unit::to_si), Some(reading))
 }
 
-/// A sentence where values without a unit are larger than those of the SI unit usually are, or center on the gravity of
-/// another unit: angles beyond a right angle, rates beyond the range of gyroscopes, accelerations about 1. Of a unit that the header
-/// states only angles beyond a turn are doubted.
+/// Returns a sentence if the values suggest another unit. Without a stated unit these are angles beyond a
+/// right angle, angular velocities beyond the range of gyroscopes, and accelerations centered on 1, the
+/// gravity in g. With a unit from the header, only angles beyond a full turn are doubted.
 fn doubtful_unit(values: &[f64], unit: Unit, assumed: bool) -> Option<String> {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -500,5 +503,5 @@ fn doubtful_unit(values: &[f64], unit: Unit, assumed: bool) -> Option<String> {
     }
 }
 
-/// Rate in rad/s that gyroscopes end at: 2000 degrees a second.
+/// Largest angular velocity that gyroscopes measure, in rad/s: 2000 degrees a second.
 const FASTEST: f64 = 35.0;

@@ -1,34 +1,34 @@
-//! How a file of columns is written: separator, decimal sign, comments, header, line of units.
+//! Detection of a file's dialect and layout: separator, decimal sign, comments, header, line of units.
 
 use crate::error::Fault;
 use crate::heading::measure_of;
 
-/// How a file of columns is written.
+/// Dialect of a file of columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Dialect {
-    /// Sign between cells; a blank stands for any number of blanks and tabs.
+    /// Separator of cells; a blank stands for any number of blanks and tabs.
     pub(crate) separator: char,
-    /// Whether numbers have a decimal comma.
+    /// `true` if numbers have a decimal comma.
     pub(crate) decimal_comma: bool,
 }
 
-/// Where in a file things are.
+/// Layout of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout<'a> {
     pub(crate) dialect: Dialect,
-    /// Line of the header, from 1.
+    /// Line number of the header, from 1.
     pub(crate) line: u64,
     /// Titles of the columns.
     pub(crate) titles: Vec<&'a str>,
-    /// Cells of the line of units.
+    /// Cells of the line of units, if there is one.
     pub(crate) units: Option<Vec<&'a str>>,
-    /// Lines of text above the header that are neither empty nor comments.
+    /// Number of lines above the header that are neither empty nor comments.
     pub(crate) preamble: usize,
-    /// Lines with samples.
+    /// Lines with samples, with their line numbers.
     pub(crate) rows: Vec<(u64, &'a str)>,
 }
 
-/// Ways of writing, in the order of trial: of two that read as many numbers the first is taken.
+/// Dialects in the order of trial; the first of those that read equally many numbers is chosen.
 const TRIED: [(char, bool); 10] = [
     (';', false),
     (';', true),
@@ -42,14 +42,14 @@ const TRIED: [(char, bool); 10] = [
     ('|', true),
 ];
 
-/// Lines from which the way of writing is told.
+/// Number of lines, at the end of the file, from which the dialect is determined.
 const TOLD_FROM: usize = 60;
 
-/// Letters of a line that a message shows.
+/// Number of characters of a line shown in a message.
 const SHOWN: usize = 60;
 
 impl Dialect {
-    /// The cells of a line, trimmed, without their quotes.
+    /// Returns the cells of a line, trimmed and without quotes.
     pub(crate) fn split<'a>(&self, line: &'a str) -> Vec<&'a str> {
         if self.separator == ' ' {
             return blanks(line);
@@ -67,7 +67,7 @@ impl Dialect {
         cells
     }
 
-    /// A cell as a finite number.
+    /// Parses a cell as a finite number.
     pub(crate) fn number(&self, text: &str) -> Option<f64> {
         let number = match self.decimal_comma {
             true if text.contains(',') && !text.contains('.') => text.replacen(',', ".", 1).parse().ok(),
@@ -76,12 +76,12 @@ impl Dialect {
         number.filter(|number: &f64| number.is_finite())
     }
 
-    /// How many cells are numbers, dates or times.
+    /// Counts the cells that are numbers, dates or times.
     fn numbers(&self, cells: &[&str]) -> usize {
         cells.iter().filter(|cell| self.number(cell).is_some() || is_date(cell)).count()
     }
 
-    /// The separator in words.
+    /// Returns the separator in words.
     pub(crate) fn name(&self) -> &'static str {
         match self.separator {
             ';' => "semicolon",
@@ -94,18 +94,18 @@ impl Dialect {
 }
 
 fn cell(text: Option<&str>) -> &str {
-    // A cell that is not there is an empty one.
+    // A missing cell counts as an empty one.
     let text = text.unwrap_or_default().trim();
     text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).map_or(text, str::trim)
 }
 
-/// Cells with blanks between them; a unit in brackets belongs to the name before it.
+/// Splits a line at blanks; a unit in brackets belongs to the name before it.
 fn blanks(line: &str) -> Vec<&str> {
     let (mut cells, mut start, mut depth) = (Vec::new(), None::<usize>, 0_i32);
     let mut end = 0;
     for (at, sign) in line.char_indices().chain([(line.len(), ' ')]) {
         if sign.is_whitespace() && depth <= 0 {
-            // The end of the line leaves nothing behind it.
+            // At the end of the line nothing follows.
             let rest = line.get(at..).unwrap_or_default().trim_start();
             if let Some(from) = start.filter(|_| !rest.starts_with(['[', '('])) {
                 cells.push(cell(line.get(from..end)));
@@ -121,14 +121,14 @@ fn blanks(line: &str) -> Vec<&str> {
     cells
 }
 
-/// Whether a cell says that there is no number: empty, `NaN`, `NA`, `null`, `-`, infinite.
+/// Returns `true` if a cell states that there is no number: empty, `NaN`, `NA`, `null`, `-`, infinite.
 pub(crate) fn is_missing(text: &str) -> bool {
     const WORDS: [&str; 8] = ["nan", "na", "n/a", "null", "none", "inf", "infinity", "nil"];
     let bare = text.trim_start_matches(['-', '+']);
     bare.is_empty() || WORDS.iter().any(|word| bare.eq_ignore_ascii_case(word))
 }
 
-/// Whether a cell is a date or a time of the day.
+/// Returns `true` if a cell is a date or a time of day.
 pub(crate) fn is_date(text: &str) -> bool {
     let digits = text.chars().filter(char::is_ascii_digit).count();
     let colons = text.matches(':').count();
@@ -138,18 +138,18 @@ pub(crate) fn is_date(text: &str) -> bool {
         && text.chars().all(|sign| sign.is_ascii_digit() || " :-+.,TtZz[]/".contains(sign))
 }
 
-/// The comment in a line, if it is one.
+/// Returns the content of a comment line, or `None` for other lines.
 fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     ["#", "%", "//"].iter().find_map(|mark| line.strip_prefix(mark))
 }
 
-/// Comments of a text that begin with `#`.
+/// Returns the contents of all comments that begin with `#`.
 pub(crate) fn statements(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter_map(|line| line.trim_start().strip_prefix('#'))
 }
 
-/// Finds out how a text is written.
+/// Determines the dialect and the layout of a text.
 ///
 /// # Errors
 /// [`Fault::Empty`] and [`Fault::NoHeader`].
@@ -158,7 +158,7 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     let lines: Vec<(u64, &str)> =
         all().filter(|(_, line)| !line.trim().is_empty() && comment(line).is_none()).collect();
     let told_from = lines.len().saturating_sub(TOLD_FROM).max(usize::from(lines.len() > 1));
-    // An empty text has no lines to tell from.
+    // An empty text has no such lines.
     let last = lines.get(told_from..).unwrap_or_default();
     let dialect = tell(last);
     let (width, usual) = (usual_width(dialect, last), usual_numbers(dialect, last));
@@ -188,9 +188,9 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     }
     let (line, header) = row(at);
     let after = at + 1 + usize::from(units.is_some());
-    // A header may be the last line.
+    // The header may be the last line.
     let rows = lines.get(after..).unwrap_or_default();
-    // A rule of dashes below the header.
+    // Skips a rule of dashes below the header.
     let is_rule =
         |line: &str| line.trim().chars().all(|sign| "-=_+|".contains(sign)) && line.trim().len() > 2;
     let rows = match rows {
@@ -205,13 +205,14 @@ fn is_unit(cell: &str) -> bool {
     bare.is_empty() || bare == "-" || measure_of(bare).is_some()
 }
 
-/// Cells up to the last that is not empty.
+/// Returns the number of cells up to the last nonempty one.
 fn filled(cells: &[&str]) -> usize {
-    // Where all are empty none is filled.
+    // Zero if all cells are empty.
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// The header in the last comment above the samples: `# time angle`, or `%time,field.data` as ROS writes it.
+/// Returns the layout of a text whose header is in the last comment above the samples: `# time angle`, or
+/// `%time,field.data` as ROS writes it.
 fn in_comment<'a>(
     text: &'a str,
     dialect: Dialect,
@@ -235,7 +236,7 @@ fn in_comment<'a>(
     Ok(Layout { dialect, line, titles, units: None, preamble: 0, rows: lines.to_vec() })
 }
 
-/// The way of writing that reads most of the lines' cells as numbers in as many cells a line.
+/// Returns the dialect in which the largest share of cells are numbers, with lines of equal width.
 fn tell(lines: &[(u64, &str)]) -> Dialect {
     let mut best = (-1.0, None);
     let mut lone = (0, Dialect { separator: ';', decimal_comma: false });
@@ -247,7 +248,7 @@ fn tell(lines: &[(u64, &str)]) -> Dialect {
             let found = dialect.split(line);
             let is_number =
                 |cell: &&&str| dialect.number(cell).is_some() || is_missing(cell) || is_date(cell);
-            // A line of another width tells against this way with all its cells.
+            // A line of another width counts against the dialect with all its cells.
             cells += found.len().max(width);
             numbers += if filled(&found) <= width { found.iter().filter(is_number).count() } else { 0 };
         }
@@ -262,22 +263,22 @@ fn tell(lines: &[(u64, &str)]) -> Dialect {
     best.1.unwrap_or(lone.1)
 }
 
-/// Number that most lines agree on; the larger where as many agree.
+/// Returns the most common of some counts, and the larger one of two that are equally common.
 fn most_common(counts: impl Iterator<Item = usize>) -> usize {
     let mut tally = std::collections::BTreeMap::new();
     for count in counts {
         *tally.entry(count).or_insert(0_usize) += 1;
     }
-    // Without lines no count is usual.
+    // Without lines there is no common count.
     tally.into_iter().max_by_key(|(count, lines)| (*lines, *count)).map_or(0, |(count, _)| count)
 }
 
-/// Cells that most lines have.
+/// Returns the number of cells that most lines have.
 fn usual_width(dialect: Dialect, lines: &[(u64, &str)]) -> usize {
     most_common(lines.iter().map(|(_, line)| filled(&dialect.split(line))))
 }
 
-/// Numbers that most lines have.
+/// Returns the number of numbers that most lines have.
 fn usual_numbers(dialect: Dialect, lines: &[(u64, &str)]) -> usize {
     most_common(lines.iter().map(|(_, line)| dialect.numbers(&dialect.split(line))))
 }

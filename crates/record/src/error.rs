@@ -1,86 +1,86 @@
-//! What can be wrong with a record.
+//! Errors of records and record files.
 
 use crate::words::counted;
 use thiserror::Error;
 
-/// A record that cannot be used, with the file it was read from.
+/// Error of a record that cannot be used, with the file it was read from.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{file}{}: {fault}", fault.place())]
 pub struct RecordError {
-    /// The file, as it was named.
+    /// Path of the file, as given by the user.
     pub file: String,
-    /// What is wrong with it.
+    /// The fault found.
     pub fault: Fault,
 }
 
-/// What is wrong with a record, without the name of its file.
+/// Fault of a record, without the name of its file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Fault {
     /// The file could not be read.
     #[error("cannot be read: {problem}; expected a record file")]
     Unreadable {
-        /// What the system says.
+        /// Error message of the operating system.
         problem: String,
     },
     /// The path names a folder.
     #[error("is a folder; expected a record file, name the file inside it")]
     Folder,
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("is empty; expected a header and at least {needed} samples")]
     Empty {
-        /// Fewest samples that make a record.
+        /// Smallest number of samples of a record.
         needed: usize,
     },
-    /// The file is of a kind that is known, and no text.
+    /// The file has a known format that is not text.
     #[error("is {kind}, not a text file with columns; {remedy}")]
     OtherFormat {
-        /// Kind of the file.
+        /// Format of the file.
         kind: &'static str,
-        /// How to get at its columns.
+        /// Instruction for extracting its columns.
         remedy: &'static str,
     },
-    /// Bytes that no text holds.
+    /// The file contains bytes that are not text.
     #[error("is no text (byte {offset}); expected a text file with columns, in UTF-8, UTF-16 or Latin-1")]
     NotText {
         /// Offset of the first byte that is not text.
         offset: usize,
     },
-    /// The header is not what the format prescribes.
+    /// The header differs from what the format requires.
     #[error("the header is `{found}`; expected {expected}")]
     BadHeader {
         /// Line, from 1.
         line: u64,
-        /// The line as written.
+        /// Line as written.
         found: String,
-        /// What the format prescribes.
+        /// Header that the format requires.
         expected: String,
     },
-    /// Numbers where the columns' names should be.
+    /// There are numbers in place of the column names.
     #[error(
         "the first line holds numbers, `{found}`; expected a header with the columns' names above them: put a line \
          such as time_s{separator}angle_rad in front"
     )]
     NoHeader {
-        /// The first line's number, from 1.
+        /// Number of the first line, from 1.
         line: u64,
-        /// The line as written, its beginning.
+        /// Beginning of the line as written.
         found: String,
-        /// The sign between its cells.
+        /// Separator of its cells.
         separator: char,
     },
-    /// A column is not there.
+    /// A column is missing.
     #[error("there is no column `{wanted}`; the header has {found}. Set `{key}` to the column's name")]
     MissingColumn {
         /// Line of the header, from 1.
         line: u64,
-        /// The column's name, or the names that are looked for.
+        /// Name of the column, or the names that are searched for.
         wanted: String,
-        /// The header's names.
+        /// Names in the header.
         found: String,
-        /// The configuration key that names the column.
+        /// Configuration key that names the column.
         key: &'static str,
     },
-    /// The input is the time or the observed quantity.
+    /// The column chosen as the input is already the time or the observed quantity.
     #[error(
         "column `{column}` is the time or the observed quantity and cannot be the input as well; set `data.input` to another \
          column, or `data.value` to the observed one"
@@ -88,10 +88,10 @@ pub enum Fault {
     InputIsTaken {
         /// Line of the header, from 1.
         line: u64,
-        /// The column.
+        /// Name of the column.
         column: String,
     },
-    /// Neither a time column nor a rate.
+    /// There is neither a time column nor a sampling rate.
     #[error(
         "no column is a time by its name or its unit; the header has {found}. Set `data.time` to the column's \
          name, or `data.sample_rate_hz` where the samples are even and have no stamps"
@@ -99,58 +99,58 @@ pub enum Fault {
     NoTime {
         /// Line of the header, from 1.
         line: u64,
-        /// The header's names.
+        /// Names in the header.
         found: String,
     },
-    /// Several columns could each be the one that is looked for.
+    /// Several columns fit a role equally well.
     #[error("{found} could each be {what}; set `{key}` to the name of one")]
     Ambiguous {
         /// Line of the header, from 1.
         line: u64,
-        /// What is looked for.
+        /// Role of the column.
         what: &'static str,
-        /// The columns.
+        /// Names of the columns.
         found: String,
-        /// The configuration key that names the column.
+        /// Configuration key that names the column.
         key: &'static str,
     },
-    /// The samples of several series stand in one file.
+    /// The file contains the samples of several series.
     #[error(
         "column `{column}` tells {count} series apart: {values}; choose one: set `data.where` to {column}={example}"
     )]
     SeveralValues {
         /// Line of the header, from 1.
         line: u64,
-        /// The column that tells them apart.
+        /// Column that distinguishes the series.
         column: String,
-        /// Number of its values.
+        /// Number of different values in the column.
         count: usize,
-        /// Its values.
+        /// The values.
         values: String,
-        /// The first of them.
+        /// First of the values.
         example: String,
     },
-    /// No line has the value that is asked for.
+    /// No line has the requested value.
     #[error("no line has `{value}` in column `{column}`, which holds {values}; correct `data.where`")]
     NoSuchValue {
-        /// The column.
+        /// Name of the column.
         column: String,
-        /// The value asked for.
+        /// Requested value.
         value: String,
-        /// Values that the column has.
+        /// Values that the column contains.
         values: String,
     },
-    /// Cells without a number, where these are refused.
+    /// There are cells without a number, which the options refuse.
     #[error(
         "{}, the first in column `{column}`; set `data.missing` to segment to leave them as gaps, or to drop to \
          close up the lines around them", counted(*count, "missing cell")
     )]
     MissingCells {
-        /// Line of the first, from 1.
+        /// Line of the first such cell, from 1.
         line: u64,
-        /// Its column.
+        /// Column of the first such cell.
         column: String,
-        /// Number of them.
+        /// Number of such cells.
         count: usize,
     },
     /// A line has fewer fields than the header.
@@ -158,12 +158,13 @@ pub enum Fault {
     MissingField {
         /// Line, from 1.
         line: u64,
-        /// Fields found.
+        /// Number of fields found.
         found: usize,
-        /// Fields expected.
+        /// Number of fields expected.
         expected: usize,
     },
-    /// A line has more fields than the header: decimal commas, which would be read as other numbers.
+    /// A line has more fields than the header. Decimal commas are the usual cause; they would be read as
+    /// other numbers.
     #[error(
         "{found} fields under a header of {expected}; expected a field for each column. Are there decimal commas between \
          commas? Write decimal points, or semicolons between the columns"
@@ -171,9 +172,9 @@ pub enum Fault {
     ExtraFields {
         /// Line, from 1.
         line: u64,
-        /// Fields found.
+        /// Number of fields found.
         found: usize,
-        /// Fields of the header.
+        /// Number of fields in the header.
         expected: usize,
     },
     /// A field is not a number.
@@ -181,17 +182,17 @@ pub enum Fault {
     NotANumber {
         /// Line, from 1.
         line: u64,
-        /// The column's name.
+        /// Name of the column.
         column: String,
-        /// The field as written.
+        /// Field as written.
         text: String,
     },
-    /// A number is infinite or no number.
+    /// A number is infinite or NaN.
     #[error("column `{column}` holds a value that is not finite; drop the line or repair the value")]
     NotFinite {
         /// Line, from 1.
         line: u64,
-        /// The column's name.
+        /// Name of the column.
         column: String,
     },
     /// Time runs backward.
@@ -202,39 +203,39 @@ pub enum Fault {
     TimeDecreases {
         /// Line of the later stamp, from 1.
         line: u64,
-        /// The stamp before, in seconds.
+        /// Previous stamp, in seconds.
         previous: f64,
-        /// The stamp, in seconds.
+        /// Stamp that is smaller, in seconds.
         stamp: f64,
     },
-    /// Too short to be a record.
+    /// There are too few samples for a record.
     #[error("has {found} sample{}; a record needs at least {needed}", if *found == 1 { "" } else { "s" })]
     TooFewSamples {
-        /// Samples found.
+        /// Number of samples found.
         found: usize,
-        /// Fewest samples that make a record.
+        /// Smallest number of samples of a record.
         needed: usize,
     },
-    /// Every stamp is the same.
+    /// All stamps are equal.
     #[error("every stamp is {stamp} s; expected time to pass")]
     NoTimePasses {
-        /// The stamp, in seconds.
+        /// The common stamp, in seconds.
         stamp: f64,
     },
-    /// Columns of different lengths.
+    /// Columns have different lengths.
     #[error("column `{column}` has {found} entries for {stamps} stamps")]
     UnequalColumns {
-        /// Which column.
+        /// Name of the column.
         column: &'static str,
-        /// Its entries.
+        /// Number of its entries.
         found: usize,
-        /// The stamps.
+        /// Number of stamps.
         stamps: usize,
     },
 }
 
 impl Fault {
-    /// `:LINE` where the fault has a line, otherwise nothing.
+    /// Returns `:LINE` if the fault has a line, otherwise an empty text.
     fn place(&self) -> String {
         match self {
             Self::BadHeader { line, .. }
@@ -254,14 +255,14 @@ impl Fault {
         }
     }
 
-    /// The fault with the name of its file.
+    /// Returns the fault with the name of its file.
     #[must_use]
     pub fn in_file(self, file: &str) -> RecordError {
         RecordError { file: file.to_owned(), fault: self }
     }
 }
 
-/// What is wrong with a cell that is no number.
+/// Returns the message for a cell that is not a number.
 fn no_number(text: &str, column: &str) -> String {
     let has_decimal_comma = text.replacen(',', ".", 1).parse::<f64>().is_ok();
     match text {

@@ -1,4 +1,4 @@
-//! Reading a file into a record and its source.
+//! Reading of a file into a record and its source.
 
 use crate::csv_file;
 use crate::error::{Fault, RecordError};
@@ -11,37 +11,37 @@ use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Where a record came from: what is shown to people and kept from estimators and diagnosis.
+/// Source of a record: information for people that is kept from estimators and from the diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
-    /// The path as it was named.
+    /// Path as given by the user.
     pub path: String,
     /// SHA-256 of the file's bytes: `sha256:` and 64 hexadecimal digits.
     pub digest: String,
-    /// What the file states of itself.
+    /// Statements in the file about itself.
     pub statements: Statements,
-    /// What was noticed while reading: sentences.
+    /// Remarks from reading the file, as sentences.
     pub findings: Vec<String>,
-    /// How the file was read.
+    /// Interpretation of the file: columns, units and other decisions.
     pub reading: Reading,
 }
 
 /// Reads a record file.
 ///
 /// # Errors
-/// [`RecordError`] with the path, the line where there is one, what was found and what was expected.
+/// [`RecordError`] with the path, the line if there is one, the fault found and what was expected.
 pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source), RecordError> {
     read_text(&path.display().to_string(), &bytes_of(path)?, options)
 }
 
-/// Reads a record from the bytes of a file; `name` is what messages call it.
+/// Reads a record from the bytes of a file; messages refer to the file as `name`.
 ///
 /// # Errors
 /// As [`read_file`].
 pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Record, Source), RecordError> {
     let parse = || {
         let text = text_of(bytes)?;
-        // Spreadsheets put a byte-order mark in front.
+        // Spreadsheets write a byte-order mark at the beginning.
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         if text.trim().is_empty() {
             return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
@@ -58,7 +58,8 @@ pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Rec
     Ok((record, source))
 }
 
-/// Kinds of files that hold logs and are no text: how they begin, what they are, and how to get at their columns.
+/// Formats that contain logs but are not text: first bytes, name of the format, and instruction for
+/// extracting the columns.
 const OTHERS: &[(&[u8], &str, &str)] = &[
     (b"PK\x03\x04", "a ZIP archive, as Excel's workbooks (.xlsx) are", "save the sheet as CSV"),
     (b"\xd0\xcf\x11\xe0", "an Excel workbook (.xls)", "save the sheet as CSV"),
@@ -74,8 +75,8 @@ const OTHERS: &[(&[u8], &str, &str)] = &[
     ),
 ];
 
-/// The text that bytes are in UTF-8, in UTF-16 where they begin with its byte-order mark, else in Latin-1, which older
-/// loggers and spreadsheets write. Bytes that no text holds are none.
+/// Decodes bytes as UTF-8, as UTF-16 if they begin with its byte-order mark, else as Latin-1, which older
+/// loggers and spreadsheets write. Bytes that are no text are a fault.
 pub(crate) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
     if let Some((_, kind, remedy)) =
         OTHERS.iter().copied().find(|(beginning, ..)| bytes.starts_with(beginning))
@@ -83,7 +84,7 @@ pub(crate) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
         return Err(Fault::OtherFormat { kind, remedy });
     }
     let error = match std::str::from_utf8(bytes) {
-        // A program or a dump may be valid UTF-8 by chance; no line of text holds a NUL.
+        // A program or a dump can be valid UTF-8 by chance, but no line of text contains a NUL.
         Ok(text) => match text.find('\0') {
             Some(offset) => Fault::NotText { offset },
             None => return Ok(Cow::Borrowed(text)),
@@ -101,7 +102,7 @@ pub(crate) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
     }
 }
 
-/// Whether the first line is that of a host log and the options name no column.
+/// Returns `true` if the first line is that of a host log and the options name no column.
 fn is_host_log(text: &str, options: &ReadOptions) -> bool {
     let columns = &options.columns;
     columns.time.is_none()
@@ -109,10 +110,10 @@ fn is_host_log(text: &str, options: &ReadOptions) -> bool {
         && text.lines().next().is_some_and(|line| host_log::is_header(line.split(',')))
 }
 
-/// The digest of a record file, as [`Source::digest`] has it, without reading what the file holds.
+/// Returns the digest of a record file, as in [`Source::digest`], without parsing the file.
 ///
 /// # Errors
-/// [`RecordError`] with the path where it cannot be read.
+/// [`RecordError`] with the path if the file cannot be read.
 pub fn file_digest(path: &Path) -> Result<String, RecordError> {
     Ok(digest(&bytes_of(path)?))
 }

@@ -1,28 +1,29 @@
-//! Name and unit in a column's title.
+//! Parsing of a column title into name and unit.
 
 use crate::unit::{TimeUnit, Unit};
 
-/// A unit of time, or any other.
+/// A unit of time, or another unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Measure {
     Time(TimeUnit),
     Value(Unit),
 }
 
-/// A column's title taken apart.
+/// A column title split into its parts.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Heading {
-    /// The title as written.
+    /// Title as written.
     pub(crate) title: String,
-    /// Words of the name in lower case, without numbers behind them: `field.position0` has `field` and `position`.
+    /// Words of the name in lower case, without trailing digits: `field.position0` gives `field` and
+    /// `position`.
     pub(crate) words: Vec<String>,
-    /// The unit that the title, or the line of units below it, states.
+    /// Unit stated by the title or by the line of units below it.
     pub(crate) measure: Option<Measure>,
-    /// What stands in brackets behind the name, or below the title, where a unit stands, and is none that is known.
+    /// Unknown text at the place of a unit: in brackets after the name, or below the title.
     pub(crate) unknown: Option<String>,
 }
 
-/// Endings that are units behind such a name only: `swing_a` is not in amperes.
+/// Endings that are units only after certain names: `swing_a` is not in amperes.
 const DOUBTFUL: &[(&str, &[&str])] = &[
     ("a", &["current"]),
     ("n", &["force", "load"]),
@@ -34,8 +35,8 @@ const DOUBTFUL: &[(&str, &[&str])] = &[
 ];
 
 impl Heading {
-    /// Takes a title apart: `angle [deg]`, `time (ms)`, `angle / deg`, `t/ms`, `velocity_rad_s`, `deg`; `below` is the cell of a line of
-    /// units, which counts where the title states none.
+    /// Parses a title: `angle [deg]`, `time (ms)`, `angle / deg`, `t/ms`, `velocity_rad_s`, `deg`. `below` is
+    /// the cell in a line of units, which is used if the title states no unit.
     pub(crate) fn parse(title: &str, below: Option<&str>) -> Self {
         let title = title.trim();
         let (name, measure) = bracketed(title).unwrap_or_else(|| suffixed(title));
@@ -66,12 +67,12 @@ impl Heading {
     }
 }
 
-/// The unit that a text names.
+/// Returns the unit that a text names.
 pub(crate) fn measure_of(text: &str) -> Option<Measure> {
     TimeUnit::parse(text).map(Measure::Time).or_else(|| Unit::parse(text).map(Measure::Value))
 }
 
-/// The name and what stands in brackets behind it.
+/// Returns the name and the text in brackets after it.
 fn in_brackets(title: &str) -> Option<(&str, &str)> {
     [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
         let (name, rest) = title.rsplit_once(open)?;
@@ -80,7 +81,7 @@ fn in_brackets(title: &str) -> Option<(&str, &str)> {
     })
 }
 
-/// `name [unit]`, `name (unit)`, `name / unit` or `name in unit`.
+/// Parses `name [unit]`, `name (unit)`, `name / unit` or `name in unit`.
 fn bracketed(title: &str) -> Option<(&str, Option<Measure>)> {
     if let Some((name, unit)) = in_brackets(title) {
         return Some((name, measure_of(unit)));
@@ -91,8 +92,8 @@ fn bracketed(title: &str) -> Option<(&str, Option<Measure>)> {
     })
 }
 
-/// `name_unit` or `name/unit`, with the longest ending that is a unit; a name that is a unit of time is a time, and one
-/// that is another unit of two letters or more holds what is measured in it.
+/// Parses `name_unit` or `name/unit` with the longest ending that is a unit. A name that is a unit of time is
+/// a time, and a name that is another unit of two letters or more is a quantity in that unit.
 fn suffixed(title: &str) -> (&str, Option<Measure>) {
     if let Some(unit) = TimeUnit::parse(title).filter(|unit| *unit != TimeUnit::Iso) {
         return (title, Some(Measure::Time(unit)));
@@ -106,7 +107,7 @@ fn suffixed(title: &str) -> (&str, Option<Measure>) {
     let breaks = title.match_indices(['_', ' ', '.', '-', '/']).map(|(at, sign)| (at, at + sign.len()));
     for (end, start) in breaks {
         let (Some(name), Some(ending)) = (title.get(..end), title.get(start..)) else { continue };
-        // `N/m` is a stiffness and no force in meters.
+        // `N/m` is a stiffness, not a force in meters.
         let is_ratio = title.get(end..start) == Some("/") && measure_of(name).is_some();
         let Some(measure) = measure_of(ending).filter(|_| !name.is_empty() && !is_ratio) else { continue };
         let doubtful = doubtful(ending);
@@ -117,7 +118,8 @@ fn suffixed(title: &str) -> (&str, Option<Measure>) {
     (title, None)
 }
 
-/// Words of a name: parted at signs and where a capital follows a small letter, numbers behind them cut off.
+/// Returns the words of a name, split at signs and where a capital follows a small letter, without trailing
+/// digits.
 fn words(name: &str) -> Vec<String> {
     let mut found = vec![String::new()];
     let mut small = false;

@@ -1,4 +1,4 @@
-//! The `host-log` format: two header lines, then `wall clock, elapsed s, angle deg`.
+//! Reader of the `host-log` format: two header lines, then `wall clock, elapsed s, angle deg`.
 
 use crate::error::Fault;
 use crate::parsed::Parsed;
@@ -24,7 +24,7 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
     }
     let mut parsed = Parsed::new(Unit::Degree, Statements::default(), reading());
     let mut wall = WallClock::default();
-    // The second line of the header is a rule of dashes.
+    // The second header line is a rule of dashes.
     for (content, line) in lines.skip(1).filter(|(content, _)| !content.trim().is_empty()) {
         let fields: Vec<&str> = content.split(',').collect();
         let &[wall_clock, elapsed, angle] = fields.as_slice() else {
@@ -44,7 +44,7 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
     Ok(parsed)
 }
 
-/// What is known of a host log without reading it.
+/// Returns the reading of a host log, which the format fixes.
 fn reading() -> Reading {
     let column = |column: &str, unit: &str| ColumnReading {
         column: column.to_owned(),
@@ -62,7 +62,7 @@ fn reading() -> Reading {
     }
 }
 
-/// A field as a finite number.
+/// Parses a field as a finite number.
 fn number(text: &str, line: u64, column: &str) -> Result<f64, Fault> {
     let text = text.trim();
     let number: f64 = text.parse().map_err(|_| Fault::NotANumber {
@@ -73,13 +73,13 @@ fn number(text: &str, line: u64, column: &str) -> Result<f64, Fault> {
     if number.is_finite() { Ok(number) } else { Err(Fault::NotFinite { line, column: column.to_owned() }) }
 }
 
-/// Whether these are the columns of a host log.
+/// Returns `true` if these are the columns of a host log.
 pub(crate) fn is_header<'a>(names: impl Iterator<Item = &'a str>) -> bool {
     let names: Vec<String> = names.map(|name| name.trim().to_lowercase()).collect();
     matches!(names.as_slice(), [_, elapsed, angle] if elapsed.contains("elapsed") && angle.contains("angle"))
 }
 
-/// Compares the log's two clocks as it is read.
+/// Comparison of the log's two clocks while it is read.
 #[derive(Default)]
 struct WallClock {
     first: Option<(f64, f64)>,
@@ -97,8 +97,8 @@ impl WallClock {
         self.last = Some(now);
     }
 
-    /// A sentence where the two clocks disagree on the record's length by more than 1 % and 0.1 s: a
-    /// host stamps a line when it writes it, so some tens of milliseconds are its ordinary delay.
+    /// Returns a sentence if the two clocks disagree on the record's length by more than 1 % plus 0.1 s. A
+    /// host stamps a line when it writes it, so a delay of some tens of milliseconds is normal.
     fn finding(&self) -> Option<String> {
         let ((first_wall, first), (last_wall, last)) = (self.first?, self.last?);
         let (wall, elapsed) = (last_wall - first_wall, last - first);
@@ -108,7 +108,7 @@ impl WallClock {
     }
 }
 
-/// `HH:MM:SS.mmm` as seconds of the day.
+/// Parses `HH:MM:SS.mmm` as seconds of the day.
 fn wall_clock_seconds(text: &str, line: u64) -> Result<f64, Fault> {
     let bad = || Fault::NotANumber {
         line,

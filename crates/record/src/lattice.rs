@@ -1,35 +1,34 @@
-//! Finding the step of an encoder (or of a text file's last digit) from the values alone.
+//! Detection of the step of an encoder, or of a text file's last digit, from the values alone.
 
 use crate::line::Line;
 
-/// Values lie on a lattice: whole multiples of a step, apart from a common offset.
+/// Lattice of values: whole multiples of a step plus a common offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
-    /// The step, in the values' unit.
+    /// Step of the lattice, in the unit of the values.
     pub step: f64,
-    /// Root mean square distance of the distinct values from the lattice, in steps. Values that know of
-    /// no lattice lie 0.289 = 1/√12 steps away; values rounded once more in a text file a few
-    /// hundredths.
+    /// Root mean square distance of the distinct values from the lattice, in steps: 0.289 = 1/√12 for values
+    /// without a lattice, and a few hundredths for lattice values that were rounded again in a text file.
     pub misfit_steps: f64,
 }
 
-/// Largest misfit that still counts as a lattice, in steps: half of what values without one have.
+/// Largest misfit that still counts as a lattice, in steps: half the misfit of values without one.
 const LARGEST_MISFIT: f64 = 0.145;
 
-/// Fewest distinct values from which a step can be told.
+/// Smallest number of distinct values from which a step can be found.
 const FEWEST_VALUES: usize = 8;
 
 impl Lattice {
-    /// The lattice of some values, or `None` where they lie on none. Costs one sort.
+    /// Finds the lattice of some values; returns `None` if they lie on none. The cost is one sort.
     ///
-    /// A first step comes from the small gaps between distinct values. Then the values are numbered
-    /// gap by gap, and a regression of value on number gives the step to a small part of itself.
+    /// A first step comes from the small gaps between distinct values. Then the values are numbered gap by
+    /// gap, and a regression of value on number gives the step to a small fraction of itself.
     #[must_use]
     pub fn find(values: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let span = sorted.last()? - sorted.first()?;
-        // The same position, written by way of a unit, can differ in its last bits.
+        // Converted units can make equal positions differ in their last bits.
         let same = span * 1e-12;
         sorted.dedup_by(|later, earlier| *later - *earlier <= same);
         if sorted.len() < FEWEST_VALUES {
@@ -54,7 +53,7 @@ impl Lattice {
             points.push((number, value - origin));
             products += number * (value - origin);
             squares += number * number;
-            // Long gaps are counted with the step as known so far, which sharpens with the span.
+            // Long gaps are counted with the current estimate of the step, which sharpens as the span grows.
             step = products / squares;
         }
         let line = Line::through(&points);

@@ -1,9 +1,9 @@
-//! A measured record: raw stamps, coordinate, input, units, resolution; readers, clocks, digests.
+//! Measured records with raw stamps, coordinate, input, units and resolution; readers, clocks and digests.
 //!
-//! A [`Record`] holds what the file says, in SI units and with the stamps as written. What is believed
-//! of the stamps is a decision with a name ([`Clock`]), and so is the sensor's step ([`Lattice`]).
-//! Where a record came from ([`Source`]) is kept beside it, never in it: whoever is handed a record
-//! cannot tell its file's name or whether it was measured or simulated.
+//! A [`Record`] holds the content of a file, in SI units and with the stamps as written. The interpretation
+//! of the stamps is an explicit decision ([`Clock`]), and so is the sensor's step ([`Lattice`]). The origin
+//! of a record ([`Source`]) is kept beside it, never in it: code that is given a record can find out neither
+//! the name of its file nor whether it was measured or simulated.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -48,5 +48,5 @@ pub use statement::{Origin, Statements};
 pub use unit::{TimeUnit, Unit};
 pub use words::{counted, two_digits};
 
-/// Fewest samples that make a record.
+/// Smallest number of samples of a record.
 pub const FEWEST_SAMPLES: usize = 8;

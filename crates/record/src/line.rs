@@ -1,6 +1,6 @@
-//! A straight line through points.
+//! Least-squares line and parabola through points.
 
-/// The least-squares line through (x, y) and what it leaves.
+/// The least-squares line through points (x, y) and its residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Line {
     pub(crate) slope: f64,
@@ -12,7 +12,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// The line through the points; its numbers are not finite where all x are equal.
+    /// Fits the line through points; its numbers are not finite if all x are equal.
     pub(crate) fn through(points: &[(f64, f64)]) -> Self {
         let count = points.len() as f64;
         let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
@@ -28,42 +28,43 @@ impl Line {
         }
     }
 
-    /// Variance of the residuals, as much larger as AR(1) residuals carry less information than white ones:
-    /// (1 + r)/(1 − r) with their lag-one autocorrelation r.
+    /// Returns the variance of the residuals times (1 + r)/(1 − r) with their lag-one autocorrelation r:
+    /// AR(1) residuals carry that much less information than white ones.
     pub(crate) fn effective_variance(&self) -> f64 {
         let r = autocorrelation(&self.residuals).clamp(0.0, 0.99);
         let degrees = (self.residuals.len() as f64 - 2.0).max(1.0);
         self.squares() / degrees * (1.0 + r) / (1.0 - r)
     }
 
-    /// Standard error of the slope.
+    /// Returns the standard error of the slope.
     pub(crate) fn slope_std_error(&self) -> f64 {
         (self.effective_variance() / self.spread_x).sqrt()
     }
 
-    /// Sum of the squared residuals.
+    /// Returns the sum of the squared residuals.
     pub(crate) fn squares(&self) -> f64 {
         self.residuals.iter().map(|residual| residual * residual).sum()
     }
 }
 
-/// What is left of a line's residuals once a parabola bends it.
+/// A parabola fitted to the residuals of a line.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bend {
     /// Root mean square of the parabola's part beyond the line.
     pub(crate) size: f64,
-    /// That part over its standard error. What is left may wander: the error is the larger one of two, widened for its
-    /// autocorrelation as of an AR(1) process, and from how much stretches of the points disagree.
+    /// That part over its standard error. The remaining residuals may wander, so the standard error is the
+    /// larger of two: one widened for their autocorrelation as an AR(1) process, and one from the
+    /// disagreement between stretches of the points.
     pub(crate) standard_errors: f64,
-    /// The line, with the residuals that the parabola leaves.
+    /// The line with the residuals that remain beside the parabola.
     pub(crate) line: Line,
 }
 
-/// Stretches that may disagree; three of them go into the parabola.
+/// Number of stretches to compare; the parabola uses up three of them.
 const STRETCHES: usize = 12;
 
 impl Bend {
-    /// Bends a line that was laid through the points.
+    /// Fits a parabola to the residuals of a line through the points.
     pub(crate) fn of(line: &Line, points: &[(f64, f64)]) -> Self {
         let count = points.len() as f64;
         let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
@@ -87,7 +88,7 @@ impl Bend {
     }
 }
 
-/// Lag-one autocorrelation about the mean; 0 for a constant series.
+/// Returns the lag-one autocorrelation about the mean; 0 for a constant series.
 fn autocorrelation(series: &[f64]) -> f64 {
     let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
     let square: f64 = series.iter().map(|x| (x - mean).powi(2)).sum();

@@ -1,4 +1,4 @@
-//! A first look at a log: all that a reader finds out without being told.
+//! First look at a log: everything that a reader finds out without options.
 
 use crate::clock::{Clock, ClockChoice};
 use crate::csv_file::Table;
@@ -9,39 +9,39 @@ use crate::record::Record;
 use crate::roles::Kind;
 use std::path::Path;
 
-/// What a file was found to be.
+/// Findings about a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Look {
     /// The record.
     pub record: Record,
-    /// Where it came from, with [`Source::reading`]: dialect, columns, units, quantity, coordinate, missing cells, and
-    /// [`crate::Reading::options`], which read the file in the same way.
+    /// Source of the record with [`Source::reading`]: dialect, columns, units, quantity, coordinate, missing
+    /// cells, and [`crate::Reading::options`], which reproduce the reading.
     pub source: Source,
-    /// Every column; none for a host log.
+    /// All columns; empty for a host log.
     pub columns: Vec<ColumnLook>,
-    /// The clock to believe, with the sampling rate.
+    /// Clock chosen from stamps and values, with the sampling rate.
     pub clock: Clock,
 }
 
 /// A column of the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnLook {
-    /// Its title as written.
+    /// Title as written.
     pub title: String,
-    /// Symbol of the unit that its title states.
+    /// Symbol of the unit stated by the title.
     pub unit: Option<String>,
-    /// `time`, `value`, `input`, or nothing where it is not read.
+    /// `time`, `value` or `input`; `None` if the column is not read.
     pub role: Option<&'static str>,
-    /// `numbers`, `dates` or `text`.
+    /// Content of the cells: `numbers`, `dates` or `text`.
     pub holds: &'static str,
-    /// Why it has its role: a phrase.
+    /// Reason for the role, as a phrase.
     pub because: Option<String>,
 }
 
-/// Looks at a file.
+/// Reads a file and reports the findings.
 ///
 /// # Errors
-/// As [`crate::read_file`]: where the file does not say enough, the message names the option to set.
+/// As [`crate::read_file`]. If the file is not clear enough, the message names the option to set.
 pub fn look(path: &Path, options: &ReadOptions) -> Result<Look, RecordError> {
     let name = path.display().to_string();
     let bytes = bytes_of(path)?;
@@ -59,7 +59,7 @@ fn columns(text: &str, source: &Source) -> Vec<ColumnLook> {
     let reading = &source.reading;
     let roles =
         [("time", reading.time.as_ref()), ("value", Some(&reading.value)), ("input", reading.input.as_ref())];
-    // A text that is no table was refused before it is looked at.
+    // A text that is not a table was already refused by `read_text`.
     let columns = Table::new(text).map(|table| table.columns).unwrap_or_default();
     let look = |column: crate::roles::Column| {
         let role =

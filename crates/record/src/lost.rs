@@ -1,4 +1,4 @@
-//! The index that samples would have if none had been lost.
+//! Sample index with lost samples counted.
 
 use crate::line::{Bend, Line};
 use crate::roughness::off_cubic;
@@ -6,57 +6,59 @@ use crate::roughness::off_cubic;
 /// Number and stamp of the last sample of each group of equal stamps.
 type Ends = Vec<(f64, f64)>;
 
-/// Samples numbered by the sensor's own clock, lost ones included.
+/// Numbers of the samples by the sensor's own clock, with lost samples counted.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Numbers {
     /// Number of each sample, from 0.
     pub(crate) of_samples: Vec<f64>,
-    /// The last sample of each group.
+    /// Last sample of each group.
     pub(crate) ends: Ends,
-    /// Samples that are missing.
+    /// Number of lost samples.
     pub(crate) lost: usize,
 }
 
-/// Part of a phase error by which the tracked phase of the even clock moves, pass by pass: each pass sharpens
-/// the interval that the next counts with, and less has to be made up for by following.
+/// Share of the phase error by which the tracked phase of the even clock is corrected, pass by pass. Each
+/// pass sharpens the interval for the next count, so less has to be corrected by tracking.
 const GAINS: [f64; 5] = [0.3, 0.2, 0.1, 0.05, 0.05];
 
-/// Groups in a stretch that a first interval is taken from.
+/// Number of groups in a stretch from which a first interval is computed.
 const STRETCH: usize = 16;
 
-/// Groups ahead that have to share a shift before samples count as lost: a late group is late alone.
+/// Number of successive groups that have to share a shift before samples count as lost; a single late group
+/// is only late.
 const LASTING: usize = 4;
 
-/// Most groups whose count is mended.
+/// Largest number of corrections of the count.
 const MOST_MENDED: usize = 500;
 
-/// Part of an interval that stamps may scatter by, root mean square, for their steps to be counted: a step
-/// then scatters by
-/// 0.21 intervals, and one of 120 is miscounted.
+/// Largest root mean square scatter of stamps, in intervals, at which their steps can be counted: a step then
+/// scatters by 0.21 intervals, and one of 120 is miscounted.
 const SCATTER: f64 = 0.15;
 
-/// Factor by which counting has to bring groups nearer to an even clock where it does not bring all within
-/// that range: where a burst lost samples in several places, it still comes out far better than no count.
+/// Factor by which counting has to reduce the groups' range of distances from an even clock if it does not
+/// bring that range below [`LATENESS`]. After a burst that lost samples in several places, the count still
+/// fits far better than none.
 const NEARER: f64 = 3.0;
 
 /// Range of the distances of groups' ends from an even clock, in intervals: the last sample of a group waits
-/// for up to one.
+/// for up to one interval.
 const LATENESS: f64 = 1.2;
 
 impl Numbers {
-    /// Every row counted, none lost.
+    /// Numbers the samples by rows, with no losses.
     pub(crate) fn plain(ends: &[(f64, f64)], rows: &[f64]) -> Self {
         Self { of_samples: rows.to_vec(), ends: ends.to_vec(), lost: 0 }
     }
 
-    /// Counts lost samples from the stamps at the ends of groups; `None` where the stamps speak against any,
-    /// or cannot tell.
+    /// Counts lost samples from the stamps at the ends of groups; returns `None` if the stamps contradict a
+    /// loss or cannot show one.
     ///
-    /// The phase of an even clock is tracked from group to group. Where a group and the next ones all lie
-    /// later than it by whole intervals, so many samples are missing. The count stands if every group then
-    /// lies as near to an even clock (which may drift) as groups without a loss do, and if that improves by
-    /// more than the information criterion's price of two numbers, place and length, for each gap. Where in
-    /// its group a gap lies, the values tell: they run most smoothly. `rows` numbers the samples among the rows of their
+    /// The phase of an even clock is tracked from group to group. If a group and the next ones all lie later
+    /// than this clock by whole intervals, that many samples are missing. The count is accepted if every
+    /// group then lies as near to an even clock (which may drift) as groups without a loss do, and if the fit
+    /// improves by more than the information criterion's price of two numbers, place and length, for each
+    /// gap. The place of a gap within its group is the one where the values run most smoothly. `rows` numbers
+    /// the samples among the rows of their file: rows without a value are not lost.
     /// file: rows without a value are not lost.
     pub(crate) fn with_lost(
         ends: &[(f64, f64)],
@@ -67,12 +69,12 @@ impl Numbers {
         let sizes: Vec<f64> =
             ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.0 - one.0).collect();
         let grouped = ends.len() < values.len();
-        // A record may end within a group, whose last sample is not there.
+        // A record may end within a group, whose last sample is then missing.
         let whole = ends.len() - usize::from(grouped);
         let before = bend(ends, whole);
         let (counted, after) = best_count(ends, &sizes, whole)?;
         let interval = after.line.slope;
-        // Asked for groups of `counted` only.
+        // Only called for groups of `counted`.
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let gaps: Vec<usize> = (1..counted.len())
             .filter(|&at| number(at) - number(at - 1) > sizes.get(at - 1).copied().unwrap_or(1.0) + 0.5)
@@ -98,16 +100,16 @@ impl Numbers {
     }
 }
 
-/// The line with a bend through the whole groups.
+/// Fits a line with a bend to the complete groups.
 fn bend(ends: &[(f64, f64)], whole: usize) -> Bend {
     debug_assert!(whole <= ends.len(), "{whole} whole groups of {}", ends.len());
-    // Never absent: asserted above.
+    // Always present: asserted above.
     let ends = ends.get(..whole).unwrap_or_default();
     Bend::of(&Line::through(ends), ends)
 }
 
-/// The count of samples that lies nearest to an even clock which may drift, with that clock; from several first
-/// guesses of the interval.
+/// Returns the count of samples that lies nearest to an even clock which may drift, with that clock. Several
+/// first guesses of the interval are tried.
 fn best_count(ends: &[(f64, f64)], sizes: &[f64], whole: usize) -> Option<(Ends, Bend)> {
     let mut best: Option<(f64, Ends, Bend)> = None;
     let starts = intervals(ends.get(..whole)?);
@@ -132,14 +134,14 @@ fn best_count(ends: &[(f64, f64)], sizes: &[f64], whole: usize) -> Option<(Ends,
     best.map(|(_, counted, after)| (counted, after))
 }
 
-/// Moves lost samples between neighboring groups: where a burst lost its last ones, its last sample waited
-/// for longer than an interval, and the loss seems to belong to the next burst.
+/// Moves lost samples between neighboring groups. If a burst lost its last samples, its last remaining sample
+/// waited for longer than an interval, and the loss seems to belong to the next burst.
 fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     let Some(ends) = counted.get(..whole) else { return };
     let line = Line::through(ends);
     let late: Vec<f64> = line.residuals.iter().map(|residual| residual / line.slope).collect();
     for (at, late) in late.iter().enumerate().take(whole.saturating_sub(1)).skip(1) {
-        // Asked for whole groups only, which are fewer than all.
+        // Only called for complete groups, which are fewer than all.
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let lost = |at: usize| number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         let more =
@@ -150,13 +152,13 @@ fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     }
 }
 
-/// Counts one sample more, or one fewer, from the group on where that brings all groups nearest to an even
-/// clock that may drift; tells whether there was such a group. A tracked count can miss a single sample,
+/// Adds or removes one sample from one group on, at the group where this brings all groups nearest to an even
+/// clock that may drift; returns `true` if there is such a group. A tracked count can miss a single sample,
 /// which shifts all that follows.
 ///
-/// A step at group k changes the sum of squares by −2Δ·Σᵢ≥ₖ rᵢ + Δ²·‖Pk‖², with what is left of the step once
-/// constants, the line and the parabola are taken out. It has to fall by 2·ln N of the variance Δ²/12 of a
-/// last sample's wait.
+/// A step of one interval Δ at group k changes the sum of squares by −2Δ·Σᵢ≥ₖ rᵢ + Δ²·‖Pk‖², where Pk is the
+/// step after constants, the line and the parabola are projected out. The sum has to fall by more than 2·ln N
+/// times Δ²/12, the variance of the waiting time of a group's last sample.
 fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     let Some(ends) = counted.get(..whole) else { return false };
     let line = Line::through(ends);
@@ -175,7 +177,7 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
             [&residuals, &linear, &bent].iter().all(|series| series.len() == whole),
             "one entry a group"
         );
-        // Never absent: asserted above.
+        // Always present: asserted above.
         let here = |series: &[f64]| series.get(at).copied().unwrap_or_default();
         let terms = [here(&residuals) / interval, constant, here(&linear), here(&bent) / length];
         for (sum, term) in sums.iter_mut().zip(terms) {
@@ -183,7 +185,7 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
         }
         let [residual, level, slope, curve] = sums;
         let step = (whole - at) as f64 - level * level - slope * slope - curve * curve;
-        // Asked for whole groups only, which are fewer than all.
+        // Only called for complete groups, which are fewer than all.
         let number = |at: usize| ends.get(at).map_or(0.0, |end| end.0);
         let lost = number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         for more in [1.0, -1.0] {
@@ -202,13 +204,13 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     more != 0.0
 }
 
-/// Largest less smallest.
+/// Returns the largest minus the smallest value.
 fn range(series: &[f64]) -> f64 {
     let highest = series.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     highest - series.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Intervals to begin with: over stretches of groups in which less was lost, and more.
+/// Returns first guesses of the interval, from stretches of groups with few to many losses.
 fn intervals(ends: &[(f64, f64)]) -> Vec<f64> {
     let stretch = STRETCH.min(ends.len().saturating_sub(1)).max(1);
     let pairs = ends.iter().zip(ends.iter().skip(stretch));
@@ -218,12 +220,12 @@ fn intervals(ends: &[(f64, f64)]) -> Vec<f64> {
     (0..=10).filter_map(at).filter(|interval| *interval > 0.0).collect()
 }
 
-/// Numbers of the groups' ends for a known interval. A count that takes back goes wrong less often where
-/// little is lost, one that does not where much is.
+/// Numbers the groups' ends for a known interval. A count that can be taken back (`takes_back`) is more
+/// reliable if few samples are lost, one that cannot if many are.
 fn count(ends: &[(f64, f64)], interval: f64, gain: f64, takes_back: bool, whole: usize) -> Ends {
     let Some(&(first, start)) = ends.first() else { return Vec::new() };
     let mut counted = vec![(first, start)];
-    // The stamp of number 0 on the tracked clock.
+    // Stamp of number 0 on the tracked clock.
     let mut phase = start - interval * first;
     let mut lost = 0.0;
     for (at, end) in ends.iter().skip(1).enumerate() {
@@ -236,7 +238,7 @@ fn count(ends: &[(f64, f64)], interval: f64, gain: f64, takes_back: bool, whole:
         phase += error * gain.max(1.0 / (at as f64 + 2.0));
         counted.push((end.0 + lost, end.1));
     }
-    // What was taken back had not been lost.
+    // Samples whose count was taken back were not lost earlier either.
     let mut lost = f64::INFINITY;
     for (number, end) in counted.iter_mut().zip(ends).rev() {
         lost = lost.min(number.0 - end.0);
@@ -245,7 +247,8 @@ fn count(ends: &[(f64, f64)], interval: f64, gain: f64, takes_back: bool, whole:
     counted
 }
 
-/// Numbers of all samples: within a group with a loss, the gap lies where the values then run most smoothly.
+/// Numbers all samples. Within a group with a loss, the gap is placed where the values then run most
+/// smoothly.
 fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], rows: &[f64], values: &[f64]) -> Vec<f64> {
     let mut numbers: Vec<f64> = Vec::with_capacity(rows.len());
     let mut lost_before = 0.0;
@@ -263,7 +266,7 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], rows: &[f64], values: &[f6
             let from = numbers.len().saturating_sub(4);
             let past: Vec<f64> = numbers.iter().skip(from).copied().collect();
             let to = (numbers.len() + group.len() + 4).min(values.len());
-            // Beyond the last sample nothing is seen.
+            // No values are known beyond the last sample.
             let seen = values.get(from..to).unwrap_or_default();
             let roughness = |early: usize| {
                 let next = following.iter().take(4).map(|row| row + lost_here);
@@ -273,7 +276,7 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], rows: &[f64], values: &[f6
             early = (0..=group.len())
                 .map(|early| (early, roughness(early)))
                 .min_by(|one, other| one.1.total_cmp(&other.1))
-                // There is always one: that all were lost before the group.
+                // There is always at least one candidate: all samples lost before the group.
                 .map_or(0, |best| best.0);
         }
         numbers.extend(numbered(early));
@@ -288,7 +291,7 @@ mod tests {
 
     const INTERVAL: f64 = 1.0 / 260.0;
 
-    /// Pseudo-random numbers in 0..1 without a generator.
+    /// Returns pseudo-random numbers in 0..1 without a generator.
     fn uniform(index: usize) -> f64 {
         ((index as f64 + 1.0) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0)
     }
@@ -301,7 +304,8 @@ mod tests {
         (-0.1 * time).exp() * (20.0 * time).sin()
     }
 
-    /// The clock of samples with the given numbers, each stamped by `stamp`, of a swing with a little noise.
+    /// Returns the clock of samples of a swing with a little noise, with the given numbers, each stamped by
+    /// `stamp`.
     fn clock(numbers: &[usize], stamp: impl Fn(usize) -> f64, choice: ClockChoice) -> Clock {
         let stamps = numbers.iter().map(|number| rounded(stamp(*number))).collect();
         let values = numbers.iter().map(|number| {
@@ -311,7 +315,8 @@ mod tests {
         Clock::new(&record, choice).unwrap()
     }
 
-    /// Every so many samples a stretch of one to `longest` is lost.
+    /// Returns the numbers of the samples that remain if one stretch of one to `longest` samples is lost in
+    /// every `every`.
     fn surviving(every: usize, longest: usize) -> Vec<usize> {
         let lost = |number: usize| {
             let (gap, place) = (number / every, number % every);
@@ -322,7 +327,8 @@ mod tests {
         (0..6500).filter(|number| !lost(*number)).collect()
     }
 
-    /// Bursts at about equal intervals: a sample has the stamp of the first burst after it.
+    /// Returns the stamp of a sample in bursts at about equal intervals: the time of the first burst after
+    /// it.
     fn burst(number: usize, interval: f64, scatter: f64) -> f64 {
         let time = number as f64 * INTERVAL;
         let end = |at: usize| (at as f64 + 0.3 + scatter * (uniform(at) - 0.5)) * interval;
@@ -330,7 +336,7 @@ mod tests {
         (near.saturating_sub(1)..near + 3).map(end).find(|end| *end >= time).unwrap()
     }
 
-    /// Largest error of a clock's times, but for a constant.
+    /// Returns the errors of a clock's times, up to a constant.
     fn error(clock: &Clock, numbers: &[usize]) -> Vec<f64> {
         let off: Vec<f64> = clock
             .times_s
@@ -373,7 +379,7 @@ mod tests {
         }
     }
 
-    /// Stamps whose scatter the values do not share: between the gaps the index is the better clock.
+    /// Between the gaps, the index is the better clock for stamps whose scatter the values do not share.
     #[test]
     fn gaps_are_counted_through_jitter() {
         let numbers = surviving(100, 8);
@@ -396,7 +402,7 @@ mod tests {
         assert!((clock.sample_rate_hz * INTERVAL - 1.0).abs() < 1e-6, "{}", clock.sample_rate_hz);
     }
 
-    /// What a clock says of lost samples does not depend on which one a configuration sets.
+    /// The number of lost samples does not depend on the clock that a configuration sets.
     #[test]
     fn a_set_clock_knows_of_lost_samples() {
         let numbers = surviving(400, 6);

@@ -9,34 +9,35 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Format {
-    /// By the first line.
+    /// Determined from the first line.
     #[default]
     Auto,
-    /// A header with column names, then numbers, with commas, semicolons, tabs or blanks between them; lines that
-    /// start with `#`, `%` or `//` are comments, of which `# origin: …`, `# sample_rate_hz: …` and `# samples: …` are
-    /// statements.
+    /// A header with column names, then numbers, separated by commas, semicolons, tabs or blanks. Lines that
+    /// start with `#`, `%` or `//` are comments; the comments `# origin: …`, `# sample_rate_hz: …` and `#
+    /// samples: …` are statements about the record.
     Csv,
     /// Two header lines, then `wall clock, elapsed s, angle deg`.
     HostLog,
 }
 
 impl Format {
-    /// Every format's name as configurations write it.
+    /// Names of all formats in configurations.
     pub const NAMES: &'static [&'static str] = &["auto", "csv", "host-log"];
 }
 
-/// How to read a file.
+/// Options for reading a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
     /// Format of the file.
     pub format: Format,
-    /// Columns and units of a `csv` file; a `host-log` has its own.
+    /// Columns and units of a `csv` file; those of a `host-log` are fixed.
     pub columns: CsvColumns,
-    /// What the sensor observes; left open, what the column's unit and name say, else a position.
+    /// Observed quantity; by default that of the column's unit or name, else a position.
     pub quantity: Option<Quantity>,
-    /// What moves, where that is known: columns of that dimension are preferred, and what states no unit is in its SI
-    /// unit.
+    /// Coordinate of the motion, if it is known: columns of its dimension are preferred, and values without a
+    /// stated unit are in its SI unit.
     pub coordinate: Option<Coordinate>,
-    /// Whether an input is known to drive the system: a command or a voltage is then taken for it too.
+    /// `true` if an input is known to drive the system: a command or a voltage is then accepted as the input
+    /// too.
     pub driven: bool,
 }

@@ -1,4 +1,4 @@
-//! What a reader made of a file's text, on its way to a record.
+//! Content of a file's text, before it becomes a record.
 
 use crate::error::Fault;
 use crate::options::ReadOptions;
@@ -7,15 +7,15 @@ use crate::record::{InputRow, Record};
 use crate::statement::Statements;
 use crate::unit::{Dimension, Unit};
 
-/// What a reader of one format collects.
+/// Data collected by the reader of one format.
 pub(crate) struct Parsed {
     unit: Unit,
     stamps_s: Vec<f64>,
     values: Vec<f64>,
     input: Vec<f64>,
-    /// Number of each sample's row, where rows hold no value and leave a gap.
+    /// Row number of each sample, if some rows hold no value and leave gaps.
     pub(crate) rows: Option<Vec<usize>>,
-    /// Input at rows that hold no value.
+    /// Input at rows without a value.
     pub(crate) input_rows: Vec<InputRow>,
     statements: Statements,
     pub(crate) findings: Vec<String>,
@@ -37,7 +37,8 @@ impl Parsed {
         }
     }
 
-    /// Adds a sample; here, and not in [`Record::new`], the line in the file is still known.
+    /// Adds a sample. Stamps are checked here and not in [`Record::new`] because the line in the file is
+    /// still known.
     pub(crate) fn push(
         &mut self,
         line: u64,
@@ -60,7 +61,7 @@ impl Parsed {
     ) -> Result<(Record, Statements, Vec<String>, Reading), Fault> {
         let input = (!self.input.is_empty()).then_some(self.input);
         let quantity = options.quantity.unwrap_or(self.reading.quantity);
-        // Without samples no time passes.
+        // Without samples the span is zero.
         let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
         let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
         let record = match self.rows {

@@ -1,4 +1,4 @@
-//! How a file was read: kept in every result, and enough to read it the same way again.
+//! Interpretation of a file: part of every result, and sufficient to read the file in the same way again.
 
 use crate::columns::Missing;
 use crate::record::Quantity;
@@ -6,7 +6,7 @@ use crate::unit::TimeUnit;
 use crate::words::counted;
 use serde::{Deserialize, Serialize};
 
-/// What moves.
+/// Coordinate of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Coordinate {
@@ -17,61 +17,62 @@ pub enum Coordinate {
     Displacement,
 }
 
-/// A column as it was read.
+/// Interpretation of one column.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ColumnReading {
-    /// Its title.
+    /// Title of the column.
     pub column: String,
-    /// The unit that its numbers were taken to be in, as options write it; none where it is not known.
+    /// Unit of the column's numbers, as options write it; `None` if it is not known.
     pub unit: Option<String>,
-    /// Why this column and this unit: a phrase.
+    /// Reason for the choice of this column and unit, as a phrase.
     pub because: String,
 }
 
-/// How a file was read.
+/// Interpretation of a file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Reading {
-    /// All of it in one line: `read as: …`.
+    /// Whole interpretation in one line: `read as: …`.
     pub sentence: String,
-    /// `csv` or `host-log`.
+    /// Format: `csv` or `host-log`.
     pub format: String,
-    /// Sign between columns: `comma`, `semicolon`, `tab` or `blank`.
+    /// Separator of the columns: `comma`, `semicolon`, `tab`, `blank` or `bar`.
     pub separator: String,
     /// Decimal sign: `point` or `comma`.
     pub decimal: String,
-    /// Line of the header, from 1.
+    /// Line number of the header, from 1.
     pub header_line: u64,
-    /// The time column; none where samples are laid out at a rate.
+    /// Time column; `None` if the samples are placed at a given rate.
     pub time: Option<ColumnReading>,
-    /// The rate at which they are, in hertz.
+    /// That rate, in hertz.
     pub sample_rate_hz: Option<f64>,
-    /// The observed column.
+    /// Observed column.
     pub value: ColumnReading,
-    /// The input's column.
+    /// Column of the input.
     pub input: Option<ColumnReading>,
-    /// The lines that were chosen: `COLUMN=VALUE`.
+    /// Filter on the lines: `COLUMN=VALUE`.
     #[serde(rename = "where")]
     pub filter: Option<String>,
-    /// Cells without a number in the columns that were read.
+    /// Number of cells without a number in the columns that were read.
     pub missing_cells: usize,
-    /// Lines that were left out for these.
+    /// Number of lines with such cells.
     pub missing_lines: usize,
-    /// What was done with them.
+    /// Treatment of these cells.
     pub missing: Missing,
-    /// What the sensor observes.
+    /// Observed quantity.
     pub quantity: Quantity,
-    /// What moves.
+    /// Coordinate of the motion.
     pub coordinate: Coordinate,
 }
 
 impl Reading {
-    /// The options that read the file in the same way, as keys of the configuration's section `data` with their values.
-    /// On the command line `time_unit` is `--time-unit`, and `sample_rate_hz` is `--sample-rate`.
+    /// Returns the options that read the file in the same way, as keys of the configuration's section `data`
+    /// with their values. On the command line, `time_unit` is `--time-unit` and `sample_rate_hz` is
+    /// `--sample-rate`.
     #[must_use]
     pub fn options(&self) -> Vec<(&'static str, String)> {
         let mut options = vec![("format", self.format.clone())];
-        // A host log has its own columns.
+        // The columns of a host log are fixed.
         if self.format != "host-log" {
             let mut column = |read: Option<&ColumnReading>, [name, unit]: [&'static str; 2]| {
                 options.extend(read.map(|read| (name, read.column.clone())));
@@ -90,7 +91,7 @@ impl Reading {
         options
     }
 
-    /// The same with its sentence.
+    /// Returns the reading with its sentence.
     pub(crate) fn worded(self, rate_hz: f64) -> Self {
         let column = |role: &str, read: &ColumnReading| match &read.unit {
             Some(unit) if unit == TimeUnit::Iso.name() => {
@@ -123,7 +124,7 @@ impl Reading {
         Self { sentence: format!("read as: {}", parts.join("; ")), ..self }
     }
 
-    /// How many cells were missing, and what was done about them; `None` where none was.
+    /// Returns the number of missing cells and their treatment in words; `None` if no cell was missing.
     #[must_use]
     pub fn missing_in_words(&self) -> Option<String> {
         let done = match self.missing {

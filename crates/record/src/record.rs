@@ -1,25 +1,25 @@
-//! The record itself.
+//! The record: samples of one coordinate with their stamps.
 
 use crate::FEWEST_SAMPLES;
 use crate::error::Fault;
 use crate::lattice::Lattice;
 use serde::{Deserialize, Serialize};
 
-/// What the sensor observes.
+/// Observed quantity: what the sensor reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quantity {
     /// Angle or displacement itself.
     #[default]
     Position,
-    /// Its first derivative: a gyroscope, a laser vibrometer.
+    /// First derivative, from a gyroscope or a laser vibrometer.
     Velocity,
-    /// Its second derivative: an accelerometer.
+    /// Second derivative, from an accelerometer.
     Acceleration,
 }
 
 impl Quantity {
-    /// The name as configurations and results write it.
+    /// Returns the name used in configurations and results.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -30,11 +30,11 @@ impl Quantity {
     }
 }
 
-/// A record in SI units, stamps as written.
+/// A record in SI units, with the stamps as written.
 ///
-/// Invariants, checked when it is made: at least [`FEWEST_SAMPLES`] samples, every number finite,
-/// stamps never decreasing (equal ones are kept: they tell how the logger worked), one value and, where
-/// there is an input, one input for each stamp.
+/// Invariants, checked on construction: at least [`FEWEST_SAMPLES`] samples; every number finite; stamps
+/// never decreasing (equal ones are kept, because they show how the logger worked); one value and, if there
+/// is an input, one input for each stamp.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     stamps_s: Vec<f64>,
@@ -42,24 +42,25 @@ pub struct Record {
     input: Option<Vec<f64>>,
     quantity: Quantity,
     unit: &'static str,
-    /// Number of each sample among the rows of its file; none where every row holds a sample.
+    /// Number of each sample among the rows of its file; `None` if every row holds a sample.
     rows: Option<Vec<usize>>,
-    /// Input at rows between the samples, which hold an input and no value.
+    /// Inputs at rows between the samples that hold an input but no value.
     input_rows: Vec<InputRow>,
 }
 
-/// Input at a row of a file that holds no value: the sensor said nothing, and the input acted all the same.
+/// Input at a row of a file that holds no value: the sensor reading is missing, but the input still acted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputRow {
     /// Number of the row.
     pub row: usize,
-    /// Its stamp as written, in seconds.
+    /// Stamp of the row as written, in seconds.
     pub stamp_s: f64,
-    /// The input, in its own unit.
+    /// Input, in its own unit.
     pub input: f64,
 }
 
-/// Row numbers and times of the samples before and after a row, the one before perhaps in it; none beyond the first and the last.
+/// Returns the row numbers and times of the last sample at or before a row and of the first sample after it;
+/// `None` outside the samples.
 pub(crate) fn beside(rows: &[usize], times: &[f64], row: usize) -> Option<[(usize, f64); 2]> {
     let after = rows.partition_point(|number| *number <= row);
     let at = |sample: usize| Some((*rows.get(sample)?, *times.get(sample)?));
@@ -67,14 +68,14 @@ pub(crate) fn beside(rows: &[usize], times: &[f64], row: usize) -> Option<[(usiz
 }
 
 impl Record {
-    /// Makes a record from columns in SI units.
+    /// Creates a record from columns in SI units.
     ///
-    /// `stamps_s` are in seconds; `values` in `unit`, the SI symbol of the observed quantity; `input`,
-    /// where there is one, in N·m, N or the input's own unit.
+    /// `stamps_s` are in seconds, `values` in `unit`, the SI symbol of the observed quantity, and `input`, if
+    /// there is one, in N·m, N or its own unit.
     ///
     /// # Errors
-    /// The first [`Fault`] met: too few samples, columns of different lengths, a number that is not
-    /// finite, a stamp before its predecessor. Lines are counted from 1, as in a file without a header.
+    /// The first [`Fault`] found: too few samples, columns of different lengths, a number that is not finite,
+    /// or a stamp smaller than its predecessor. Lines are counted from 1, as in a file without a header.
     pub fn new(
         stamps_s: Vec<f64>,
         values: Vec<f64>,
@@ -86,7 +87,7 @@ impl Record {
         Ok(Self { stamps_s, values, input, quantity, unit, rows: None, input_rows: Vec::new() })
     }
 
-    /// Checks columns as [`Record::new`] does, without taking them.
+    /// Checks columns as [`Record::new`] does, without taking ownership.
     ///
     /// # Errors
     /// As [`Record::new`].
@@ -121,9 +122,9 @@ impl Record {
         Ok(())
     }
 
-    /// The same with the number of each sample among the rows of its file, of which others hold no value: samples whose
-    /// rows are no neighbors are none either. Left out where there is not one number for each sample, or where they do
-    /// not increase.
+    /// Returns the record with the row numbers of its samples, for a file in which other rows hold no value.
+    /// Samples in rows that are not adjacent are not neighbors. The row numbers are ignored unless there is
+    /// one for each sample and they increase.
     #[must_use]
     pub fn with_rows(self, rows: Vec<usize>) -> Self {
         let increase = rows.iter().zip(rows.iter().skip(1)).all(|(one, next)| one < next);
@@ -131,11 +132,11 @@ impl Record {
         Self { rows: usable.then_some(rows), ..self }
     }
 
-    /// The same with the input at rows that hold an input and no value. Those are kept that lie between samples whose rows are
-    /// numbered ([`Record::with_rows`]), by their number and by their stamp.
+    /// Returns the record with the inputs at rows that hold an input but no value. Only rows that lie between
+    /// samples, by number ([`Record::with_rows`]) and by stamp, are kept.
     #[must_use]
     pub fn with_input_rows(self, rows: Vec<InputRow>) -> Self {
-        // Without numbered rows, or an input, none lies between.
+        // Without row numbers, or without an input, no row lies between samples.
         let numbers = self.rows.as_deref().filter(|_| self.input.is_some()).unwrap_or_default();
         let is_between = |row: &InputRow| {
             let ends = beside(numbers, &self.stamps_s, row.row);
@@ -150,13 +151,15 @@ impl Record {
         Self { input_rows, ..self }
     }
 
-    /// Input at rows between the samples that hold an input and no value, by their numbers; empty where there are none.
+    /// Returns the inputs at rows between the samples that hold an input but no value, in the order of the
+    /// rows; empty if there are none.
     #[must_use]
     pub fn input_rows(&self) -> &[InputRow] {
         &self.input_rows
     }
 
-    /// The same with functions of its values and of its inputs, also of those between samples.
+    /// Returns the record with functions applied to its values and to its inputs, including those between
+    /// samples.
     ///
     /// # Errors
     /// As [`Record::new`].
@@ -168,21 +171,21 @@ impl Record {
         Ok(Self { rows: self.rows.clone(), input_rows: input_rows.collect(), ..mapped })
     }
 
-    /// Number of each sample among the rows of its file, where rows between them hold no value.
+    /// Returns the number of each sample among the rows of its file, or `None` if every row holds a sample.
     #[must_use]
     pub fn rows(&self) -> Option<&[usize]> {
         self.rows.as_deref()
     }
 
-    /// Rows between the first sample and the last that hold no value.
+    /// Returns the number of rows without a value between the first and the last sample.
     #[must_use]
     pub fn empty_rows(&self) -> usize {
         let ends = self.rows().and_then(|rows| rows.first().zip(rows.last()));
-        // Where every row holds a sample none is empty.
+        // If every row holds a sample, none is empty.
         ends.map_or(0, |(first, last)| last - first + 1 - self.len())
     }
 
-    /// Number of each sample: that of its row, or its index where every row holds a sample.
+    /// Returns the number of each sample: that of its row, or its index if every row holds a sample.
     pub(crate) fn row_numbers(&self) -> Vec<f64> {
         match &self.rows {
             Some(rows) => rows.iter().map(|row| *row as f64).collect(),
@@ -190,49 +193,49 @@ impl Record {
         }
     }
 
-    /// Number of samples.
+    /// Returns the number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
         self.stamps_s.len()
     }
 
-    /// Whether there are no samples: never so, by the invariants.
+    /// Returns `true` if there are no samples, which the invariants exclude.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.stamps_s.is_empty()
     }
 
-    /// The stamps as written, in seconds, never decreasing.
+    /// Returns the stamps as written, in seconds, never decreasing.
     #[must_use]
     pub fn stamps_s(&self) -> &[f64] {
         &self.stamps_s
     }
 
-    /// The observed values, in [`Record::unit`].
+    /// Returns the observed values, in [`Record::unit`].
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The measured input, where there is one, in its own unit.
+    /// Returns the measured input in its own unit, if there is one.
     #[must_use]
     pub fn input(&self) -> Option<&[f64]> {
         self.input.as_deref()
     }
 
-    /// What the sensor observes.
+    /// Returns the observed quantity.
     #[must_use]
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }
 
-    /// SI symbol of the observed values, such as `rad`.
+    /// Returns the SI symbol of the observed values, such as `rad`.
     #[must_use]
     pub fn unit(&self) -> &'static str {
         self.unit
     }
 
-    /// The step of the sensor's lattice, where the values lie on one.
+    /// Returns the lattice of the sensor's steps, if the values lie on one.
     #[must_use]
     pub fn lattice(&self) -> Option<Lattice> {
         Lattice::find(&self.values)

@@ -1,4 +1,4 @@
-//! Which column is the time, the observed quantity, the input: by what the options name, else by names and units.
+//! Choice of the columns of time, observed quantity and input: by the options, else by names and units.
 
 use crate::columns::CsvColumns;
 use crate::error::Fault;
@@ -8,7 +8,7 @@ use crate::reading::Coordinate;
 use crate::record::Quantity;
 use crate::unit::{Dimension, Unit};
 
-/// What the cells of a column are.
+/// Kind of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Numbers,
@@ -16,14 +16,14 @@ pub(crate) enum Kind {
     Text,
 }
 
-/// A column before it is read.
+/// A column before its cells are read.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     pub(crate) heading: Heading,
     pub(crate) kind: Kind,
 }
 
-/// A column with the reason why it was taken.
+/// A chosen column with the reason for the choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Pick {
     pub(crate) at: usize,
@@ -35,7 +35,7 @@ const BY_NAME: &str = "by its name";
 const BY_UNIT: &str = "by its unit";
 const ONLY: &str = "the only other column of numbers";
 
-/// Names of times, those that are surest first.
+/// Names of time columns, most reliable first.
 const TIMES: &[&str] = &[
     "time",
     "t",
@@ -59,7 +59,8 @@ const TIMES: &[&str] = &[
     "date",
     "clock",
 ];
-/// Names of positions, those that are surest first; of those a file's first group is taken.
+/// Names of position columns, most reliable first. Of a file's columns, the one with the earliest of these
+/// names is taken.
 const POSITIONS: &[&str] = &[
     "angle",
     "theta",
@@ -84,16 +85,16 @@ const POSITIONS: &[&str] = &[
     "state",
 ];
 const VELOCITIES: &[&str] = &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot"];
-/// Asked for as the input, where no column is called so: there is none.
+/// Name that requests no input, unless a column has this name.
 const NO_INPUT: &str = "none";
 const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
 const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
 const INPUTS: &[&str] =
     &["command", "cmd", "u", "input", "voltage", "setpoint", "target", "action", "desired", "current"];
-/// Words of names that are lengths, where no unit says so.
+/// Words in the names of lengths, for columns without a unit.
 const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];
 
-/// The first of a list's words that is in a name, as its place in the list.
+/// Returns the position in a list of the first of its words that a name contains.
 fn rank(heading: &Heading, list: &[&str]) -> Option<usize> {
     list.iter().position(|word| heading.has(word))
 }
@@ -103,7 +104,7 @@ fn drives(heading: &Heading) -> bool {
         || heading.unit().is_some_and(|unit| unit.dimension() == Dimension::Drive)
 }
 
-/// What a name says of the quantity, with its rank.
+/// Returns the quantity that a name suggests, with its rank.
 fn observed(heading: &Heading) -> Option<(Quantity, usize)> {
     let of = |quantity, list| rank(heading, list).map(|rank| (quantity, rank));
     let by_unit = heading.unit().map(|unit| quantity_of(unit.order()));
@@ -121,18 +122,18 @@ pub(crate) fn quantity_of(order: usize) -> Quantity {
     }
 }
 
-/// What a column holds: what is asked for, else what its unit or its name says, else a position.
+/// Returns the quantity of a column: by the options, else by its unit or name, else a position.
 pub(crate) fn quantity(heading: &Heading, options: &ReadOptions) -> Quantity {
     let unit = options.columns.unit.or(heading.unit());
     options
         .quantity
         .or(unit.map(|unit| quantity_of(unit.order())))
         .or(observed(heading).map(|(quantity, _)| quantity))
-        // Where neither a unit nor a name tells, the quantity is that of most logs.
+        // If neither a unit nor a name decides, the quantity is that of most logs.
         .unwrap_or_default()
 }
 
-/// The unit of a column that states none.
+/// Returns the unit of a column that states none.
 pub(crate) fn assumed_unit(heading: &Heading, quantity: Quantity, coordinate: Option<Coordinate>) -> Unit {
     let length = rank(heading, LENGTHS).is_some()
         || quantity == Quantity::Acceleration && rank(heading, ACCELERATIONS).is_some();
@@ -147,10 +148,10 @@ pub(crate) fn assumed_unit(heading: &Heading, quantity: Quantity, coordinate: Op
     }
 }
 
-/// How well a column suits as the observed one, see [`Roles::score`].
+/// Suitability of a column as the observed one; see [`Roles::score`].
 type Score = (bool, usize, usize, bool);
 
-/// Columns of a table and what is asked of them.
+/// Columns of a table, and the options for choosing among them.
 pub(crate) struct Roles<'a> {
     pub(crate) line: u64,
     pub(crate) columns: &'a [Column],
@@ -162,7 +163,7 @@ impl Roles<'_> {
         &self.options.columns
     }
 
-    /// The column of a name: as written, else whatever the case, else without its unit.
+    /// Finds a column by name: as written, else ignoring case, else without its unit.
     pub(crate) fn named(&self, name: &str, key: &'static str) -> Result<usize, Fault> {
         let find =
             |same: &dyn Fn(&Heading) -> bool| self.columns.iter().position(|column| same(&column.heading));
@@ -181,7 +182,7 @@ impl Roles<'_> {
         titles.map(|column| format!("`{}`", column.heading.title)).collect::<Vec<_>>().join(", ")
     }
 
-    /// The time column; none where the options give a rate and the file has no stamps.
+    /// Returns the time column; `None` if the file has no stamps and the options give a rate.
     pub(crate) fn time(&self) -> Result<Option<Pick>, Fault> {
         if let Some(name) = &self.asked().time {
             return Ok(Some(Pick { at: self.named(name, "data.time")?, because: NAMED }));
@@ -190,7 +191,7 @@ impl Roles<'_> {
         let score = |&(_, column): &(usize, &Column)| {
             let word = rank(&column.heading, TIMES).filter(|_| column.heading.unit().is_none());
             let has_unit = column.heading.time_unit().is_some();
-            // A date stands after elapsed times: it says when a line was written.
+            // Dates rank after elapsed times, because a date states when a line was written.
             let kind = if column.kind == Kind::Dates { 200 } else { 0 };
             match (word, has_unit) {
                 _ if column.heading.has("elapsed") => Some(kind),
@@ -213,7 +214,7 @@ impl Roles<'_> {
         }
     }
 
-    /// The observed column, and a sentence where another one is as likely but for the order of names.
+    /// Returns the observed column, and a sentence if another one is preferred only by the order of names.
     pub(crate) fn value(&self, time: Option<Pick>) -> Result<(Pick, Option<String>), Fault> {
         if let Some(name) = &self.asked().value {
             return Ok((Pick { at: self.named(name, "data.value")?, because: NAMED }, None));
@@ -243,7 +244,7 @@ impl Roles<'_> {
                 })
             }
             [(_, at), ..] => Ok((Pick { at: *at, because: BY_NAME }, self.as_likely(&found))),
-            // Words under such a name are a fault of their line, which is told where they are read.
+            // Words in such a column are a fault of their line, which is reported when the cells are read.
             [] if let Some(at) = self.text_with_such_a_name() => Ok((Pick { at, because: BY_NAME }, None)),
             [] => {
                 let other: Vec<usize> =
@@ -256,7 +257,8 @@ impl Roles<'_> {
         }
     }
 
-    /// A sentence where more columns hold the quantity of the first of `found`, as roll and pitch both are positions.
+    /// Returns a sentence if several columns hold the same quantity as the first of `found`, as roll and
+    /// pitch are both positions.
     fn as_likely(&self, found: &[(Score, usize)]) -> Option<String> {
         let ((other, order, ..), taken) = found.first()?;
         let same = |column: &Column| {
@@ -264,7 +266,7 @@ impl Roles<'_> {
                 .is_some_and(|(its, its_order, ..)| (its, its_order) == (*other, *order))
         };
         let taken = &self.columns.get(*taken)?.heading;
-        // The same words with another unit are the same quantity once more.
+        // A column with the same words but another unit is the same quantity once more.
         let more = self.titles(|column| column.heading.words != taken.words && same(column));
         (!more.is_empty())
             .then(|| format!("`{}` was taken and not {more}; name another with `data.value`", taken.title))
@@ -276,8 +278,9 @@ impl Roles<'_> {
             .position(|column| column.kind == Kind::Text && self.score(&column.heading).is_some())
     }
 
-    /// How well a column suits as the observed one, the best least: first of the nominal's dimension, then positions
-    /// before their derivatives, then by name, then SI units before others.
+    /// Returns the suitability of a column as the observed one; smaller is better. Columns of the nominal
+    /// simulator's dimension come first, then positions before their derivatives, then the order of names,
+    /// then SI units before others.
     fn score(&self, heading: &Heading) -> Option<Score> {
         if drives(heading) {
             return None;
@@ -306,8 +309,8 @@ impl Roles<'_> {
         Some((other, order, rank, heading.unit().is_some_and(|unit| unit.to_si() != 1.0)))
     }
 
-    /// The input, where there is one, and a sentence where there could be several. Torques and forces are taken; a
-    /// command or a voltage only where an input is asked for.
+    /// Returns the input, if there is one, and a sentence if several columns could be it. Torques and forces
+    /// are accepted; commands and voltages only if the system is known to be driven.
     pub(crate) fn input(&self, taken: &[usize]) -> Result<(Option<Pick>, Option<String>), Fault> {
         if let Some(name) = &self.asked().input {
             let named = self.named(name, "data.input");

@@ -1,20 +1,23 @@
-//! How smoothly values run on a clock.
+//! Comparison of two clocks by the smoothness of the values on each.
 
-/// Samples over which sums are taken as one draw: neighborhoods that share samples are correlated, these are hardly.
+/// Number of samples whose sum is one draw: neighborhoods that share samples are correlated, blocks are
+/// hardly so.
 const BLOCK: usize = 25;
 
-/// By how many standard errors the values contradict the stamps more than the even clock; negative where they
-/// contradict the even clock more. Without motion, or without scatter of the stamps, a standard normal draw at most.
+/// Returns the standard errors by which the values contradict the stamps more than the even clock; negative
+/// if they contradict the even clock more. Without motion, or without scatter of the stamps, it is at most a
+/// standard normal draw.
 ///
-/// Five neighbors deviate from a cubic by one number: their fourth divided difference scaled to unit noise, h on the
-/// stamps and e on the even clock. Were the stamps the times of reading, h would be noise, and independent of the
-/// scatter's own mark q = h − e, which is the scatter times the speed; were the even clock, e would be. What noise itself
-/// puts into h·q and −e·q is σ²·(1 − cos α), with α the angle between the two sets of weights and σ² the smaller of the
-/// mean squares of h and e. So H = Σ (h·q − σ²·(1 − cos α)) contradicts the stamps, E = Σ (−e·q − σ²·(1 − cos α)) the even
-/// clock, and E/(H + E) is the part of the scatter that the values share: a regression of the deviations on the
-/// scatter's mark rather than a comparison of squares, which needs twice the scatter. Its error is that of sums over
-/// blocks, of what is left beside that part. The contradiction counts the less the nearer the part is to one half.
-/// Stamps must increase.
+/// Five neighbors deviate from a cubic by one number, their fourth divided difference scaled to unit noise: h
+/// on the stamps and e on the even clock. If the sensor was read at the stamps, h is noise, and is
+/// independent of q = h − e, the mark of the stamps' scatter (scatter times speed). If it was read at the
+/// times of the even clock, e is noise. Noise alone adds σ²·(1 − cos α) to h·q and to −e·q, where α is the
+/// angle between the two sets of weights and σ² the smaller of the mean squares of h and e. So the sum H = Σ
+/// (h·q − σ²·(1 − cos α)) contradicts the stamps, and the sum E = Σ (−e·q − σ²·(1 − cos α)) contradicts the
+/// even clock. The ratio E/(H + E) is the share of the scatter that the values follow. This is a regression
+/// of the deviations on the mark of the scatter; a comparison of squares would need twice the scatter. The
+/// standard error comes from sums over blocks of the residual beside that share. The contradiction is
+/// weighted down as the share approaches one half. Stamps must increase.
 pub(crate) fn preference_for_even(stamps: &[f64], values: &[f64], even: &[f64]) -> f64 {
     let windows = stamps.windows(5).zip(even.windows(5)).zip(values.windows(5));
     let marks: Vec<Mark> = windows.map(|((stamps, even), values)| Mark::of(stamps, even, values)).collect();
@@ -27,7 +30,7 @@ pub(crate) fn preference_for_even(stamps: &[f64], values: &[f64], even: &[f64]) 
     let against_host: f64 = marks.iter().map(of_host).sum();
     let against_even: f64 = marks.iter().map(of_even).sum();
     let all = against_host + against_even;
-    // The part of the scatter that the values share: 0 for the even clock, 1 for the stamps.
+    // Share of the scatter that the values follow: 0 for the even clock, 1 for the stamps.
     let shared = against_even / all;
     let beside = |mark: &Mark| (1.0 - shared) * of_even(mark) - shared * of_host(mark);
     let squares = marks.chunks(BLOCK).map(|block| block.iter().map(beside).sum::<f64>().powi(2));
@@ -37,11 +40,11 @@ pub(crate) fn preference_for_even(stamps: &[f64], values: &[f64], even: &[f64]) 
     } else {
         -against_even / error * (2.0 * shared - 1.0).min(1.0)
     };
-    // Where nothing scatters, or nothing moves beyond the noise, there is nothing to go by.
+    // Without scatter, or without motion beyond the noise, there is no evidence for either clock.
     if preference.is_finite() && all > 0.0 { preference } else { 0.0 }
 }
 
-/// How far five neighbors deviate from a cubic on either clock.
+/// Deviations of five neighbors from a cubic on either clock.
 struct Mark {
     host: f64,
     even: f64,
@@ -61,7 +64,7 @@ impl Mark {
     }
 }
 
-/// Weights of five points in their fourth divided difference: 1/Π (tᵢ − tⱼ).
+/// Returns the weights of five points in their fourth divided difference: 1/Π (tᵢ − tⱼ).
 fn weights(times: &[f64]) -> [f64; 5] {
     let mut weights = [0.0; 5];
     for (at, (slot, time)) in weights.iter_mut().zip(times).enumerate() {
@@ -75,16 +78,17 @@ fn length(weights: &[f64; 5]) -> f64 {
     weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
 }
 
-/// Σ cᵢ·yᵢ with weights scaled to Σ cᵢ² = 1.
+/// Returns Σ cᵢ·yᵢ with the weights scaled to Σ cᵢ² = 1.
 fn weighed(weights: &[f64; 5], values: &[f64]) -> f64 {
     debug_assert_eq!(values.len(), weights.len(), "a weight for each of five values");
-    // Relative to the first value, so that values at rest lie on the cubic exactly.
+    // Relative to the first value, so that values at rest lie exactly on the cubic.
     let origin = values.first().copied().unwrap_or_default();
     let sum: f64 = weights.iter().zip(values).map(|(weight, value)| weight * (value - origin)).sum();
     sum / length(weights)
 }
 
-/// Distance of five points from a cubic, in the noise of a point: their fourth divided difference, scaled.
+/// Returns the distance of five points from a cubic, in units of a point's noise: their scaled fourth divided
+/// difference.
 pub(crate) fn off_cubic(times: &[f64], values: &[f64]) -> f64 {
     weighed(&weights(times), values)
 }
@@ -98,8 +102,9 @@ mod tests {
 
     const SAMPLES: usize = 6500;
 
-    /// Preferences over 200 records of a decaying swing of amplitude 1 at noise 1e-3, with stamps that scatter by
-    /// so many seconds. `host` says whether the values were read when the stamps say.
+    /// Returns the preferences of 200 records of a decaying swing of amplitude 1 with noise 1e-3, whose
+    /// stamps scatter by `scatter` seconds. If `host` is true, the values were read at the times of the
+    /// stamps.
     fn preferences(amplitude: f64, scatter: f64, host: bool) -> Vec<f64> {
         let mut generator = ChaCha8Rng::seed_from_u64(5);
         let mut normal = move || generator.sample::<f64, _>(StandardNormal);
@@ -118,7 +123,8 @@ mod tests {
         preferences.iter().filter(|preference| **preference > limit).count()
     }
 
-    /// The scatter times the root mean square speed is 0.15 of the noise: twelve times the noise in all.
+    /// The scatter times the root mean square speed is 0.15 times the noise of one sample; over all samples
+    /// together it is twelve times the noise.
     #[test]
     fn scatter_of_twelve_times_the_noise_is_seen_whichever_clock_is_right() {
         let scatter = 0.15e-3 / (33.0 * 0.5_f64.sqrt() * ((1.0 - (-5.0_f64).exp()) / 5.0).sqrt());

@@ -1,51 +1,53 @@
-//! What a record's stamps look like.
+//! Statistics of a record's stamps.
 
 use crate::line::{Bend, Line};
 use crate::lost::Numbers;
 use crate::roughness::preference_for_even;
 
-/// What the stamps look like.
+/// Statistics of the stamps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StampStatistics {
-    /// Stamps equal to the one before.
+    /// Number of stamps equal to the one before.
     pub repeated: usize,
-    /// Groups of equal stamps, single ones included.
+    /// Number of groups of equal stamps, including groups of one.
     pub groups: usize,
-    /// Most samples that share one stamp.
+    /// Largest number of samples with the same stamp.
     pub largest_group: usize,
     /// Median time between groups, in seconds.
     pub group_interval_s: f64,
-    /// Where no stamp is repeated: steps longer than 1.5 times the median step by more than the stamps
-    /// are rounded to, rows without a value counted in. Samples are missing there. None where it is jitter that makes
-    /// steps long: their neighbors are then as much too short.
+    /// If no stamp is repeated: number of steps longer than 1.5 times the median step by more than the
+    /// rounding of the stamps, with rows without a value counted. Samples are missing there. 0 if jitter
+    /// makes the steps long: their neighbors are then too short by as much.
     pub gaps: usize,
-    /// The decimal step that stamps are rounded to, in seconds, where there is one.
+    /// Decimal step to which stamps are rounded, in seconds; `None` if there is none.
     pub rounding_s: Option<f64>,
-    /// Samples that are missing, where the stamps tell how many: every gap is then whole intervals of an even
-    /// clock long. Repeated stamps can tell it too.
+    /// Number of missing samples, if the stamps determine it: every gap is then a whole number of intervals
+    /// of an even clock. Repeated stamps can determine it too.
     pub lost: usize,
-    /// Root mean square distance of the groups' last stamps from an even clock, lost samples counted, in seconds.
+    /// Root mean square distance of the groups' last stamps from an even clock, with lost samples counted, in
+    /// seconds.
     pub deviation_s: f64,
     /// Largest such distance, in seconds.
     pub largest_deviation_s: f64,
-    /// Where no stamp is repeated: standard deviation of independent errors of the stamps, from second differences of
-    /// their distances from an even clock, rounding included, in seconds. What changes slowly cancels. 0 otherwise.
+    /// If no stamp is repeated: standard deviation of independent errors of the stamps, in seconds. It is
+    /// computed from second differences of their distances from an even clock, so slow changes cancel and
+    /// rounding is included. 0 otherwise.
     pub scatter_s: f64,
-    /// Root mean square of the parabola in those distances, in seconds: the logger's clock and the sensor's
-    /// change their rates against one another.
+    /// Root mean square of the parabola in those distances, in seconds: a relative drift of the rates of the
+    /// logger's and the sensor's clock.
     pub bend_s: f64,
-    /// The same over its standard error, widened for wander of what is left.
+    /// That parabola over its standard error, widened for wander of the remaining distances.
     pub bend_standard_errors: f64,
     /// Largest distance from the parabola, in seconds.
     pub left_by_bend_s: f64,
-    /// Standard errors by which the values contradict the stamps more than an even clock; negative where they contradict
-    /// the even clock more, 0 where stamps are repeated.
+    /// Number of standard errors by which the values contradict the stamps more than an even clock; negative
+    /// if they contradict the even clock more, 0 if stamps are repeated.
     pub preference_for_even: f64,
 }
 
-/// The decimal step that stamps are rounded to.
+/// Returns the decimal step to which stamps are rounded, or `None` if there is none.
 pub(crate) fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
-    // Decimal rounding is what loggers do; a handful of powers of ten is all there is to try.
+    // Loggers round to decimals, so only a few powers of ten have to be tried.
     let span = stamps.last()? - stamps.first()?;
     (1..=9)
         .map(|digits| 10_f64.powi(digits))
@@ -60,7 +62,8 @@ pub(crate) fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
         .map(|scale| 1.0 / scale)
 }
 
-/// What the stamps look like, given the numbers of the samples and the line through the groups' ends.
+/// Computes the statistics of the stamps from the numbers of the samples and the line through the groups'
+/// ends.
 pub(crate) fn statistics(
     stamps: &[f64],
     values: &[f64],
@@ -69,7 +72,7 @@ pub(crate) fn statistics(
     line: &Line,
 ) -> StampStatistics {
     let steps: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1).collect();
-    // Without what rows that hold no value account for.
+    // Steps without the share of rows that hold no value.
     let own: Vec<f64> = ends
         .iter()
         .zip(ends.iter().skip(1))
@@ -83,14 +86,14 @@ pub(crate) fn statistics(
     // Stamps that lie on no lattice are not rounded.
     let long = 1.5 * usual + rounding_s.unwrap_or_default().min(0.5 * usual);
     debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
-    // A record may end within a group, whose last sample is not there.
+    // A record may end within a group, whose last sample is then missing.
     let whole = numbers.ends.get(..ends.len() - usize::from(repeated > 0)).unwrap_or_default();
     let bend = Bend::of(&Line::through(whole), whole);
     let even: Vec<f64> = numbers.of_samples.iter().map(|number| line.slope * number).collect();
     StampStatistics {
         repeated,
         groups: ends.len(),
-        // A record has samples, so that there is a group.
+        // A record has samples, so there is a group.
         largest_group: largest_group.unwrap_or_default(),
         group_interval_s: middle(&steps),
         gaps: if repeated == 0 { gaps(&own, usual, long) } else { 0 },
@@ -106,15 +109,16 @@ pub(crate) fn statistics(
     }
 }
 
-/// The upper median of the steps between groups.
+/// Returns the upper median of the steps between groups.
 fn middle(steps: &[f64]) -> f64 {
     let mut ordered = steps.to_vec();
     ordered.sort_by(f64::total_cmp);
-    // Two groups of stamps at least have a step between them.
+    // There are at least two groups, so there is a step.
     ordered.get(ordered.len() / 2).copied().unwrap_or_default()
 }
 
-/// Standard deviation of independent errors, from second differences: their variance is six times that of an error.
+/// Returns the standard deviation of independent errors from second differences, whose variance is six times
+/// that of one error.
 fn scatter(ends: &[(f64, f64)], line: &Line) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0);
     for (points, errors) in ends.windows(3).zip(line.residuals.windows(3)) {
@@ -129,10 +133,11 @@ fn scatter(ends: &[(f64, f64)], line: &Line) -> f64 {
     if count > 0.0 { (squares / (6.0 * count)).sqrt() } else { 0.0 }
 }
 
-/// Steps longer than `long`, unless it is jitter that makes them so.
+/// Counts steps longer than `long`, unless jitter makes them long.
 ///
-/// A stamp that is late by e makes its step longer by e and the next one shorter by as much: over all long steps the
-/// neighbors are short by as much as these are long. A missing sample leaves its neighbors as they are.
+/// A stamp that is late by e makes its own step longer by e and the next one shorter by e. Over all long
+/// steps, the neighbors are then too short by as much as the long steps are too long. A missing sample leaves
+/// its neighbors unchanged.
 fn gaps(steps: &[f64], median: f64, long: f64) -> usize {
     let (mut count, mut excess, mut made_up) = (0, 0.0, 0.0);
     for (index, step) in steps.iter().enumerate().filter(|(_, step)| **step > long) {
@@ -148,7 +153,7 @@ fn gaps(steps: &[f64], median: f64, long: f64) -> usize {
 mod tests {
     use crate::{Clock, ClockChoice, ClockKind, Quantity, Record};
 
-    /// Pseudo-random numbers in −0.5..0.5 without a generator.
+    /// Returns pseudo-random numbers in −0.5..0.5 without a generator.
     fn noise(index: usize) -> f64 {
         (index as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5
     }
@@ -173,8 +178,8 @@ mod tests {
         }
     }
 
-    /// Half a change of the rate times the time squared, less its line, is (change/2)·T²·(x² − x + 1/6) for x
-    /// = t/T, whose mean square is (change/2)²·T⁴/180.
+    /// (change/2)·t² minus its regression line is (change/2)·T²·(x² − x + 1/6) for x = t/T, with mean square
+    /// (change/2)²·T⁴/180.
     #[test]
     fn a_changing_rate_bends_the_stamps() {
         let change = 2e-5;

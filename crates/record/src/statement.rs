@@ -1,26 +1,26 @@
-//! What a file or a configuration states of a record, and whether the stamps bear it out.
+//! Statements of a file or a configuration about a record, and their comparison with the stamps.
 
 use crate::clock::Clock;
 use serde::{Deserialize, Serialize};
 
-/// Where the numbers of a record came from, as stated.
+/// Origin of a record's numbers, as stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
-    /// A sensor.
+    /// From a sensor.
     Measured,
-    /// A program.
+    /// From a program.
     Simulated,
-    /// Nobody says.
+    /// Not stated.
     #[default]
     Unstated,
 }
 
 impl Origin {
-    /// Every origin's name as files and configurations write it.
+    /// Names of all origins in files and configurations.
     pub const NAMES: &'static [&'static str] = &["measured", "simulated", "unstated"];
 
-    /// The name as files and configurations write it.
+    /// Returns the name used in files and configurations.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -30,7 +30,7 @@ impl Origin {
         }
     }
 
-    /// The origin that all of several records share; unstated where they differ, or where there are none.
+    /// Returns the common origin of several records; unstated if the origins differ or there are no records.
     ///
     /// ```
     /// use record::Origin;
@@ -41,16 +41,16 @@ impl Origin {
     #[must_use]
     pub fn shared(origins: impl IntoIterator<Item = Self>) -> Self {
         let mut origins = origins.into_iter();
-        // Of no record nothing is stated.
+        // Without records nothing is stated.
         let first = origins.next().unwrap_or_default();
         if origins.all(|other| other == first) { first } else { Self::Unstated }
     }
 }
 
-/// Statements about a record. They are compared with the record, never used in its place.
+/// Statements about a record. They are compared with the record and never used in its place.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Statements {
-    /// Where the numbers came from.
+    /// Origin of the numbers.
     pub origin: Option<Origin>,
     /// Sampling rate, in hertz.
     pub sample_rate_hz: Option<f64>,
@@ -59,8 +59,8 @@ pub struct Statements {
 }
 
 impl Statements {
-    /// Reads one comment line of a CSV file, without its `#`: `origin: simulated`,
-    /// `sample_rate_hz: 260`, `samples: 6500`. Anything else is prose and left alone.
+    /// Reads one comment line of a CSV file, without its `#`: `origin: simulated`, `sample_rate_hz: 260`,
+    /// `samples: 6500`. Other comments are ignored.
     pub(crate) fn read_comment(&mut self, comment: &str) {
         let Some((key, value)) = comment.split_once(':') else {
             return;
@@ -80,7 +80,7 @@ impl Statements {
         }
     }
 
-    /// These statements, completed by others where these are silent.
+    /// Returns these statements, with gaps filled from `others`.
     #[must_use]
     pub fn or(self, others: &Self) -> Self {
         Self {
@@ -90,10 +90,10 @@ impl Statements {
         }
     }
 
-    /// Compares the statements with what was found; a sentence for each that does not hold.
+    /// Compares the statements with the record; returns one sentence for each that does not hold.
     ///
-    /// A rate is contradicted when it is off by more than one part in a hundred *and* by more than four
-    /// standard errors: labels are rounded ("about 100 Hz"), and a short record knows its rate poorly.
+    /// A rate is contradicted if it is off by more than one part in a hundred *and* by more than four
+    /// standard errors: labels are rounded ("about 100 Hz"), and a short record determines its rate poorly.
     #[must_use]
     pub fn contradictions(&self, samples: usize, clock: &Clock) -> Vec<String> {
         let mut found = Vec::new();
@@ -117,7 +117,7 @@ impl Statements {
 mod tests {
     use crate::{Clock, ClockChoice, CsvColumns, ReadOptions, read_text};
 
-    /// What is said of a rate, on the command line or in the file, is compared with the stamps.
+    /// A stated rate, on the command line or in the file, is compared with the stamps.
     #[test]
     fn a_rate_beside_stamps_is_checked() {
         let rows: String = (0..200).map(|i| format!("{:.2},{}\n", 0.01 * f64::from(i), i % 7)).collect();

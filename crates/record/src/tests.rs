@@ -1,11 +1,11 @@
-//! Files as other programs write them, of one swing.
+//! Files in the styles of other programs, all of one swing.
 
 use crate::{
     Clock, ClockChoice, ClockKind, CsvColumns, Filter, Missing, ReadOptions, Record, Source, TimeUnit, Unit,
     look, read_text,
 };
 
-/// Time in seconds and angle in radians of a sample.
+/// Returns the time in seconds and the angle in radians of a sample.
 fn swing(index: usize) -> (f64, f64) {
     let time = index as f64 * 0.01;
     (time, 0.6 * (-0.2 * time).exp() * (9.0 * time).cos())
@@ -24,7 +24,7 @@ fn refusal(text: &str) -> String {
     read_text("r.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string()
 }
 
-/// A text of 200 samples below a header.
+/// Returns a text of 200 samples below a header.
 fn file(header: &str, row: impl Fn(usize, f64, f64) -> String) -> String {
     (0..200).fold(format!("{header}\n"), |text, index| {
         let (time, angle) = swing(index);
@@ -36,7 +36,7 @@ fn comma(number: f64, decimals: usize) -> String {
     format!("{number:.decimals$}").replace('.', ",")
 }
 
-/// Expects the swing, with stamps from zero on.
+/// Asserts that a record holds the swing, with stamps counted from the first.
 fn holds_the_swing((record, source): &(Record, Source), tolerance: f64) {
     assert_eq!(record.len(), 200, "{}", source.reading.sentence);
     let first = record.stamps_s()[0];
@@ -128,7 +128,8 @@ fn a_missing_cell_is_a_gap_or_closed_up_or_refused() {
     }
 }
 
-/// 10 s at 100 samples a second with a third of a second of missing cells; the columns, and how a line is written.
+/// Returns 10 s at 100 samples a second, with missing cells for a third of a second. `header` names the
+/// columns and `line` writes a line.
 fn with_a_hole(header: &str, line: impl Fn(usize, f64, &str) -> String) -> String {
     (0..1000).fold(format!("{header}\n"), |text, index| {
         let time = index as f64 / 100.0;
@@ -145,7 +146,8 @@ fn clock_with(text: &str, missing: Missing, rate: Option<f64>, choice: ClockChoi
     (record, clock)
 }
 
-/// A clock that is even in the index counted samples and not rows: all after a gap came a third of a second early.
+/// Regression: a clock that is even in the index counted samples instead of rows, so all samples after a gap
+/// came a third of a second early.
 #[test]
 fn a_uniform_index_counts_rows_without_a_value() {
     let stamped = with_a_hole("time_s,angle_rad", |_, time, cell| format!("{time:.2},{cell}"));
@@ -182,7 +184,7 @@ fn rows_of_another_sensor_are_no_loss() {
     assert!((clock.times_s[999] - clock.times_s[0] - 9.99).abs() < 1e-9, "{}", clock.reason);
 }
 
-/// Lines that an export holds twice were taken for bursts, and the rate for half as high again.
+/// Regression: duplicate lines of an export were taken for bursts, and the rate came out half as high again.
 #[test]
 fn a_line_that_stands_twice_is_read_once() {
     let text = file("time_s,angle_rad", |index, time, angle| {
@@ -196,7 +198,7 @@ fn a_line_that_stands_twice_is_read_once() {
     assert_eq!((clock.statistics.repeated, clock.statistics.lost), (0, 0), "{}", clock.reason);
 }
 
-/// Where the sensor's cell alone is missing the input is known; a line without an input tells nothing of it.
+/// If only the sensor's cell is missing, the input is known; a line without an input contributes none.
 #[test]
 fn the_input_of_a_line_without_a_value_is_kept() {
     let stamped = with_a_hole("time_s,angle_rad,torque [mN m]", |index, time, cell| match index {
@@ -223,7 +225,7 @@ fn the_input_of_a_line_without_a_value_is_kept() {
     assert!(record.input_rows().is_empty(), "a dropped line was never there");
 }
 
-/// Stamps of bursts with a hole: groups are numbered by rows, and nothing counts as lost beside these.
+/// Stamps of bursts with a hole: groups are numbered by rows, and no other samples count as lost.
 #[test]
 fn bursts_with_missing_cells_have_lost_nothing() {
     let text =
@@ -284,7 +286,7 @@ fn another_column_that_could_be_observed_is_told() {
         findings("time_s,roll_rad,pitch_rad"),
         ["`roll_rad` was taken and not `pitch_rad`; name another with `data.value`"]
     );
-    // A rate of it and the same in another unit are no other motion.
+    // A derivative of the same motion, or the same angle in another unit, is not another motion.
     assert!(findings("time_s,angle_rad,velocity").is_empty());
     assert!(findings("time_s,angle_rad,angle_deg").is_empty());
 }
@@ -297,7 +299,7 @@ fn the_nominal_coordinate_chooses_among_columns() {
     let (record, source) =
         read_text("r", text.as_bytes(), &options(crate::Coordinate::Displacement)).unwrap();
     assert_eq!((record.unit(), record.values()[0]), ("m", 1.2));
-    // A command without a unit is in that of the position beside it.
+    // A command without a unit has the unit of the position in the same file.
     assert!((record.input().unwrap()[0] - 0.6e-3).abs() < 1e-12);
     assert!(source.findings[0].contains("taken to be in mm"), "{:?}", source.findings);
     let (record, _) = read_text("r", text.as_bytes(), &options(crate::Coordinate::Angle)).unwrap();
@@ -346,7 +348,7 @@ fn odd_rates_and_angles_are_remarked() {
     assert!(source.findings.is_empty(), "{:?}", source.findings);
 }
 
-/// A bare column is taken to be in SI units, and that is said where its numbers are rather those of another unit.
+/// A column without a unit is taken to be in SI units; a finding reports values that suggest another unit.
 #[test]
 fn numbers_that_are_rather_in_another_unit_are_told() {
     let told = |header: &str, value: &dyn Fn(f64) -> f64| {
@@ -366,7 +368,7 @@ fn numbers_that_are_rather_in_another_unit_are_told() {
     let said = told("time_s,acc_x", &|a| 1.0 + 0.2 * a);
     assert!(said.contains("in g (a factor of 9.81), set `data.unit` to g"), "{said}");
     assert_eq!(told("time_s,acc_x", &|a| 2.0 * a), "");
-    // A header that says rad over degrees, and one over a swing.
+    // A header that states rad above degrees, and one above a real swing.
     let text = file("time,angle_rad", |_, t, a| format!("{t},{}", 100.0 * a));
     assert!(read(&text).1.findings[0].contains("the header says rad"), "{:?}", read(&text).1.findings);
     let text = file("time,angle_rad", |_, t, a| format!("{t},{}", 3.0 * a));
@@ -447,7 +449,7 @@ fn a_look_tells_columns_and_rate() {
     std::fs::remove_file(&folder).unwrap();
 }
 
-/// Options are obeyed; where the header states another unit, that is said.
+/// Options take precedence; a finding reports a header that states another unit.
 #[test]
 fn a_unit_that_contradicts_the_header_is_told() {
     let text = file("timestamp_ms,displacement_m", |index, _, angle| format!("{},{angle:.6}", 10 * index));
@@ -467,7 +469,7 @@ fn a_unit_that_contradicts_the_header_is_told() {
     assert_eq!(told(same), "");
 }
 
-/// Spreadsheets and older loggers write the sign for degrees in one byte, or everything in two.
+/// Spreadsheets and older loggers write the degree sign in one byte, or every character in two.
 #[test]
 fn latin_and_utf_16_are_read() {
     let text = file("time_s;angle [°]", |_, time, angle| format!("{time:.2};{:.6}", angle.to_degrees()));

@@ -1,4 +1,4 @@
-//! Stamps from a file's time column, whatever they are written in.
+//! Conversion of a file's time column to stamps in seconds.
 
 use crate::dialect::{Dialect, is_date};
 use crate::unit::TimeUnit;
@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use jiff::civil::{DateTime, Time};
 use jiff::tz::TimeZone;
 
-/// A stamp as written: whole units and the fraction of one, so that nanoseconds since 1970 keep their differences.
+/// A stamp as written: whole units and a fraction, so that nanoseconds since 1970 keep their differences.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stamp {
     whole: i128,
@@ -19,7 +19,7 @@ const DAY_NS: i128 = 86_400_000_000_000;
 const LARGEST_KEPT_S: f64 = 1e6;
 
 impl Stamp {
-    /// Reads a cell; dates and times of the day in nanoseconds.
+    /// Parses a cell; dates and times of day are in nanoseconds.
     pub(crate) fn parse(text: &str, dialect: Dialect) -> Option<Self> {
         if is_date(text) {
             return date(text).map(|whole| Self { whole, fraction: 0.0 });
@@ -27,12 +27,12 @@ impl Stamp {
         let value = dialect.number(text)?;
         let point = if dialect.decimal_comma { ',' } else { '.' };
         let (whole, fraction) = text.split_once(point).unwrap_or((text, ""));
-        // With an exponent, or beyond 128 bits, the double is what there is.
+        // With an exponent, or beyond 128 bits, only the double is available.
         let exact = whole.parse::<i128>().ok().filter(|_| fraction.bytes().all(|byte| byte.is_ascii_digit()));
         let Some(exact) = exact.filter(|_| value.abs() >= 1e6) else {
             return Some(Self { whole: 0, fraction: value });
         };
-        // Digits only, as was asked above, so that this is a number.
+        // Digits only, as checked above, so this parses as a number.
         let part = format!("0.{fraction}0").parse().unwrap_or(0.0);
         Some(Self { whole: exact, fraction: if value < 0.0 { -part } else { part } })
     }
@@ -45,14 +45,15 @@ impl Stamp {
         (self.whole - first.whole) as f64 + (self.fraction - first.fraction)
     }
 
-    /// Adds seconds and nanoseconds as ROS keeps them.
+    /// Combines seconds and nanoseconds, as ROS stores them.
     pub(crate) fn with_nanoseconds(self, nanoseconds: Self) -> Self {
         let whole = (self.value() as i128).saturating_mul(1_000_000_000);
         Self { whole: whole.saturating_add(nanoseconds.value() as i128), fraction: 0.0 }
     }
 }
 
-/// ISO 8601 with or without an offset, a blank in place of the T, or a time of the day, in nanoseconds.
+/// Parses ISO 8601 with or without an offset, with a blank in place of the T, or a time of day, in
+/// nanoseconds.
 fn date(text: &str) -> Option<i128> {
     let text = text.trim().replace(',', ".").replace('/', "-");
     if let Ok(stamp) = text.replacen(' ', "T", 1).parse::<Timestamp>() {
@@ -66,16 +67,16 @@ fn date(text: &str) -> Option<i128> {
     Some(seconds * 1_000_000_000 + i128::from(time.subsec_nanosecond()))
 }
 
-/// Stamps in seconds, the unit they were taken to be in, and how that was told.
+/// Stamps in seconds, their original unit, and how that unit was determined.
 pub(crate) struct Times {
     pub(crate) seconds: Vec<f64>,
     pub(crate) unit: TimeUnit,
     pub(crate) told: Told,
-    /// Whether stamps are counted from the first.
+    /// `true` if stamps are counted from the first.
     pub(crate) from_first: bool,
 }
 
-/// How the unit of time was told.
+/// Source of the unit of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Told {
     Stated,
@@ -83,12 +84,11 @@ pub(crate) enum Told {
     Assumed,
 }
 
-/// Stamps in seconds: as written where they are elapsed times, from the first one where they are dates or times since
-/// 1970.
+/// Converts stamps to seconds: elapsed times as written, dates and times since 1970 counted from the first.
 pub(crate) fn seconds(stamps: &[Stamp], stated: Option<TimeUnit>, dates: bool) -> Times {
     let first = stamps.first().copied().unwrap_or(Stamp { whole: 0, fraction: 0.0 });
     if dates {
-        // Past midnight a time of the day begins anew.
+        // A time of day starts again after midnight.
         let (mut days, mut previous) = (0, first.whole);
         let of_day = stamps.iter().all(|stamp| (0..DAY_NS).contains(&stamp.whole));
         let seconds = stamps.iter().map(|stamp| {
@@ -116,7 +116,7 @@ pub(crate) fn seconds(stamps: &[Stamp], stated: Option<TimeUnit>, dates: bool) -
     Times { seconds, unit, told, from_first }
 }
 
-/// The unit in which a number is a time between 1980 and 2100.
+/// Returns the unit in which a number is a time between 1980 and 2100, if there is one.
 fn since_1970(stamp: f64) -> Option<TimeUnit> {
     let units = [TimeUnit::Second, TimeUnit::Millisecond, TimeUnit::Microsecond, TimeUnit::Nanosecond];
     units.into_iter().find(|unit| (3.15e8..4.1e9).contains(&unit.to_seconds(stamp)))

@@ -1,12 +1,12 @@
-//! Words for what was found.
+//! Formatting of counts and errors for sentences.
 
-/// So many of something, in words that agree: `1 sample`, `3 samples`.
+/// Returns a count with its noun in the right number: `1 sample`, `3 samples`.
 #[must_use]
 pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// An error to two significant digits: with a power of ten only where that is shorter.
+/// Formats an error to two significant digits, with a power of ten only if that is shorter.
 #[must_use]
 pub fn two_digits(value: f64) -> String {
     if value == 0.0 {

@@ -1,4 +1,5 @@
-//! How long a user waits for a fit: 69 peaks of a bent, scattered envelope, every estimator of the registry.
+//! Benchmark of the time of a fit: 69 peaks of a bent, scattered envelope, for every estimator of the
+//! registry.
 //!
 //!     cargo bench -p registry
 //!     cargo bench -p registry -- pinn
@@ -17,10 +18,10 @@ fn main() {
     divan::main();
 }
 
-/// Seeds of an estimator that draws.
+/// Number of seeds for an estimator that draws random numbers.
 const SEEDS: u64 = 4;
 
-/// Settings beside the defaults that take another way.
+/// Settings besides the defaults that use another algorithm.
 const OTHERS: &[(&str, &str)] = &[
     ("bayesian", "estimator.check_by_sampling = false"),
     ("bayesian", "estimator.method = \"nuts\""),

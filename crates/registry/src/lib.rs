@@ -1,9 +1,9 @@
-//! The estimators there are, one line each: adding one is a line here and one in the manifest.
+//! Registry of all estimators. A new estimator needs one line here and one in the manifest.
 
 use estimator::Entry;
 
-/// Every estimator, in the paper's order, the null estimator first, those that the paper does not have
-/// last.
+/// Every estimator: the null estimator first, then those of the paper in its order, then those that the paper
+/// does not have.
 pub const ESTIMATORS: &[Entry] = &[
     estimator_baseline::ENTRY,
     estimator_sindy::ENTRY,

@@ -1,7 +1,8 @@
-//! The battery: one named test for each registered estimator and each check, `pinn::it_beats_the_null_estimator`.
+//! Conformance battery: one named test per registered estimator and check, such as
+//! `pinn::it_beats_the_null_estimator`.
 //!
-//! The tests come from the registry, so that a new estimator joins by its line there. Coverage over a
-//! thousand envelopes is left out unless asked for: `cargo test --release -p registry -- --ignored`.
+//! The tests are generated from the registry, so that a new estimator is included by its line there. Coverage
+//! over a thousand envelopes runs only on request: `cargo test --release -p registry -- --ignored`.
 
 #![allow(clippy::print_stdout, reason = "a test harness")]
 
@@ -13,7 +14,7 @@ use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// What an estimator is let off, and why. A waived check that passes fails.
+/// Exemptions of estimators from checks, with their reasons. A waived check that passes fails.
 const WAIVERS: &[Waiver] = &[
     Waiver {
         estimator: "symbolic",
@@ -34,21 +35,21 @@ const WAIVERS: &[Waiver] = &[
     on_noise("transformer", "its weights hold the answer: trained on one envelope it need not read it"),
 ];
 
-/// The learned part contributed nothing to λ.
+/// Creates a waiver for a learned part that contributes nothing to λ.
 const fn at_zero(estimator: &'static str, reason: &'static str) -> Waiver {
     Waiver { estimator, check: "with_its_learned_part_at_zero_it_is_wrong", reason }
 }
 
-/// What the network read contributed nothing to λ.
+/// Creates a waiver for a network whose input contributes nothing to λ.
 const fn on_noise(estimator: &'static str, reason: &'static str) -> Waiver {
     Waiver { estimator, check: "reading_noise_it_is_wrong", reason }
 }
 
-/// Envelopes of the short and of the long coverage test.
+/// Numbers of envelopes in the short and in the long coverage test.
 const SHORT: u64 = 40;
 const LONG: u64 = 1000;
 
-/// Largest distance from 95 % of the long test; the short one is allowed what chance allows.
+/// Largest distance from 95 % in the long test; the short one is allowed three standard errors.
 const COVERAGE_BAR: f64 = 0.015;
 
 fn main() -> ExitCode {
@@ -90,7 +91,8 @@ fn no_two_share_a_name() -> Result<(), Failed> {
     if ids.len() == ESTIMATORS.len() { Ok(()) } else { Err("two estimators share a name".into()) }
 }
 
-/// Intervals of λ, and predictive intervals of fresh peaks where the method states them.
+/// Checks the coverage of the intervals of λ, and of the predictive intervals of fresh peaks if the method
+/// states them.
 fn covers(subject: &Subject<'_>, envelopes: u64) -> Result<(), Failed> {
     let cohort = coverage(subject, envelopes)?;
     for (what, found) in [("λ", cohort.rates), ("fresh peaks", cohort.fresh_peaks)] {
@@ -106,14 +108,14 @@ fn covers(subject: &Subject<'_>, envelopes: u64) -> Result<(), Failed> {
     even(subject, &cohort.calibration, envelopes)
 }
 
-/// Chance that a calibrated estimator fails, at most.
+/// Largest probability that a calibrated estimator fails.
 const CALIBRATION_ALPHA: f64 = 0.001;
 
 fn calibrated(subject: &Subject<'_>, envelopes: u64) -> Result<(), Failed> {
     even(subject, &calibration(subject, envelopes)?, envelopes)
 }
 
-/// The truth falls evenly over the stated posteriors.
+/// Checks that the levels of the truth in the stated posteriors are uniform.
 fn even(subject: &Subject<'_>, found: &Calibration, envelopes: u64) -> Result<(), Failed> {
     let (deviation, band) = (found.deviation(), found.band(CALIBRATION_ALPHA));
     let silent = found.without_interval;
@@ -124,7 +126,8 @@ fn even(subject: &Subject<'_>, found: &Calibration, envelopes: u64) -> Result<()
     if deviation > band {
         return Err(format!("off by {deviation:.3}, band {band:.3}").into());
     }
-    // On a handful of peaks a method may be unable to tell signal from scatter, and should say so; rarely.
+    // On a handful of peaks a method may be unable to tell signal from scatter and should say so, but only
+    // rarely.
     if 100 * silent > envelopes {
         return Err(format!("{silent} of {envelopes} envelopes without interval").into());
     }

@@ -1,4 +1,5 @@
-//! Classes of effects in words: how sure, which kind, how large. Page, terminal and `diagnosis.json` share these sentences.
+//! Sentences on classes of effects: certainty, kind and size. The page, the terminal and `diagnosis.json`
+//! share them.
 
 use results::{ClassRow, DiagnosisResult, EffectRow, KindRow, VerdictStatus};
 
@@ -8,34 +9,34 @@ use crate::format::{
 };
 use crate::verdict::in_a_sentence;
 
-/// Share within its class from which on a kind is mentioned where the data do not tell the kind.
+/// Smallest share within its class with which a kind is mentioned if the data do not distinguish the kind.
 const LEAST_KIND: f64 = 0.1;
-/// Kinds that are mentioned at most where the data do not tell which.
+/// Largest number of kinds mentioned if the data do not distinguish the kind.
 const MOST_KINDS: usize = 3;
 
-/// Certainty of a class of effects, by its probability.
+/// Certainty of a class of effects, from its probability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Standing {
     /// Probability of 0.9 or more.
     Certain,
     /// Probability from 0.5 to 0.9.
     Likely,
-    /// Probability from 0.1 to 0.5, and something speaks for it.
+    /// Probability from 0.1 to 0.5, with evidence for the class.
     Open,
 }
 
 impl Standing {
-    /// Every standing, the surest first.
+    /// All standings, the most certain first.
     pub const ALL: [Self; 3] = [Self::Certain, Self::Likely, Self::Open];
 
-    /// Standing of a class with this probability; `None` below 0.1.
+    /// Returns the standing for a probability; `None` below 0.1.
     #[must_use]
     pub fn of(probability: f64) -> Option<Self> {
         Self::ALL.into_iter().find(|standing| probability >= standing.least())
     }
 
-    /// Standing of a class: [`Self::of`] its probability, and open only where something speaks for it. What a class that nothing
-    /// speaks for has is the probability with which any system has it.
+    /// Returns the standing of a class: [`Self::of`] its probability, but open only with evidence for the
+    /// class. Without evidence the probability is merely the one with which any system has the class.
     #[must_use]
     pub fn of_class(class: &ClassRow) -> Option<Self> {
         let evidence = class.evidence;
@@ -43,7 +44,7 @@ impl Standing {
         Self::of(class.probability).filter(|standing| *standing != Self::Open || speaks)
     }
 
-    /// Its word: `certain`, `likely` or `open`.
+    /// Returns the word for the standing: `certain`, `likely` or `open`.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -53,7 +54,7 @@ impl Standing {
         }
     }
 
-    /// Lowest probability that has this standing.
+    /// Returns the lowest probability with this standing.
     #[must_use]
     pub fn least(self) -> f64 {
         match self {
@@ -64,22 +65,22 @@ impl Standing {
     }
 }
 
-/// A class of effects with what is to be said of it.
+/// A class of effects with the statement about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassStatement<'a> {
-    /// The class.
+    /// Row of the class.
     pub class: &'a ClassRow,
-    /// How sure it is.
+    /// Certainty of the class.
     pub standing: Standing,
-    /// Its name in words, as inside a sentence: `dry friction`.
+    /// Name of the class as inside a sentence: `dry friction`.
     pub title: String,
-    /// Whether fits speak for it, and not the record alone.
+    /// `true` if fits support the class, and not only the record itself.
     pub is_fitted: bool,
-    /// Kind, size, share of what the effects close, and the error without and with it, in one sentence.
+    /// Kind, size, share of the closed gap, and the error without and with the class, in one sentence.
     pub sentence: String,
 }
 
-/// Name of a class in plain words, as inside a sentence. An id that is not known is its own name.
+/// Returns the name of a class in plain words, as inside a sentence. An unknown id is returned unchanged.
 #[must_use]
 pub fn class_title(id: &str) -> String {
     match id {
@@ -99,7 +100,7 @@ pub fn class_title(id: &str) -> String {
     .to_owned()
 }
 
-/// Name of a class as the object of a sentence: `a second body`.
+/// Returns the name of a class as the object of a sentence: `a second body`.
 fn with_article(id: &str) -> String {
     let title = class_title(id);
     match id {
@@ -108,8 +109,8 @@ fn with_article(id: &str) -> String {
     }
 }
 
-/// Classes that are certain, likely or open: by standing, and within that by their share of the gap. None for a file of an
-/// older version.
+/// Returns the classes that are certain, likely or open, ordered by standing and then by their share of the
+/// gap. Empty for a file of an older version.
 #[must_use]
 pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
     let mut statements: Vec<ClassStatement<'_>> = result
@@ -129,7 +130,7 @@ pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
     statements
 }
 
-/// The other classes with their probabilities, in one sentence; `None` where there are none.
+/// Returns the other classes with their probabilities, in one sentence; `None` if there are none.
 #[must_use]
 pub fn unlikely_classes(result: &DiagnosisResult) -> Option<String> {
     let all = result.classes.iter().filter(|class| Standing::of_class(class).is_none());
@@ -139,20 +140,20 @@ pub fn unlikely_classes(result: &DiagnosisResult) -> Option<String> {
     (!named.is_empty()).then(|| format!("Unlikely, with their probabilities: {}.", named.join(", ")))
 }
 
-/// Name of an effect inside a sentence, by the result's own table where it has a row.
+/// Returns the name of an effect as inside a sentence, from the result's own table if it has a row.
 pub(crate) fn effect_title(result: &DiagnosisResult, id: &str) -> String {
     let known = result.effects.iter().find(|row| row.id == id);
     let title = known.map_or_else(|| capitalized(&id.replace('_', " ")), |row| row.title.clone());
     in_a_sentence(&title)
 }
 
-/// A text with its first letter large.
+/// Returns a text with its first letter in upper case.
 pub(crate) fn capitalized(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }
 
-/// Words with commas between and a last word before the last of them: `a, b and c`.
+/// Joins words with commas, and the last two with a given word: `a, b and c`.
 #[must_use]
 pub fn listed(words: &[String], last: &str) -> String {
     match words {
@@ -162,7 +163,7 @@ pub fn listed(words: &[String], last: &str) -> String {
     }
 }
 
-/// Name of a kind beside that of its class: `Coulomb` beside `dry friction`.
+/// Returns the name of a kind beside that of its class: `Coulomb` beside `dry friction`.
 pub(crate) fn kind_title(result: &DiagnosisResult, class: &str, id: &str) -> String {
     let title = effect_title(result, id);
     let short = match class {
@@ -177,15 +178,15 @@ fn effect<'a>(result: &'a DiagnosisResult, id: &str) -> Option<&'a EffectRow> {
     result.effects.iter().find(|row| row.id == id)
 }
 
-/// What is told of a class: kinds that stamps or values show without a fit, and kinds that were fitted.
+/// Kinds of a class: those that stamps or values show without a fit, and those that were fitted.
 struct Told<'a> {
     result: &'a DiagnosisResult,
     class: &'a ClassRow,
     /// Ids of kinds that the record shows.
     shown: Vec<&'a str>,
-    /// Ids of kinds that the fits tell; empty where they do not tell which, or name none.
+    /// Ids of kinds that the fits determine; empty if they do not distinguish the kind or name none.
     fitted: Vec<&'a str>,
-    /// Ids of kinds between which the fits do not tell.
+    /// Ids of kinds that the fits do not distinguish.
     possible: Vec<&'a str>,
 }
 
@@ -199,7 +200,7 @@ impl<'a> Told<'a> {
             class.kinds.iter().partition(|kind| is_shown(&kind.id) && is_named(&kind.id));
         let shown: Vec<&str> = shown.iter().map(|kind| kind.id.as_str()).collect();
         let named: Vec<&str> = others.iter().map(|kind| kind.id.as_str()).filter(|id| is_named(id)).collect();
-        // Beside a kind that the record shows, a fitted one counts for itself.
+        // Beside a kind that the record shows, a fitted kind is judged on its own.
         let is_told = class.kind_is_told || others.len() == 1 || !shown.is_empty();
         let likely = others.iter().enumerate().filter(|(at, kind)| *at < 2 || kind.share >= LEAST_KIND);
         let (fitted, possible) = match (is_told, named.is_empty()) {
@@ -219,12 +220,13 @@ impl<'a> Told<'a> {
         titles.filter(|title| *title != own).collect()
     }
 
-    /// Whether fits speak for the class, and not the record alone.
+    /// Returns `true` if fits support the class, and not only the record itself.
     fn is_fitted(&self) -> bool {
         !self.fitted.is_empty() || !self.possible.is_empty()
     }
 
-    /// Standing of what was fitted: that of the class, or of the surest fitted kind beside one that the record shows.
+    /// Returns the standing of the fitted kinds: that of the class, or of the most certain fitted kind beside
+    /// one that the record shows.
     fn standing(&self) -> Option<Standing> {
         if self.shown.is_empty() {
             return Standing::of_class(self.class);
@@ -233,7 +235,7 @@ impl<'a> Told<'a> {
         Standing::of(self.fitted.iter().map(of).fold(0.0, f64::max))
     }
 
-    /// The class with the fitted kinds in parentheses: `dry friction (Coulomb)`.
+    /// Returns the class with the fitted kinds in parentheses: `dry friction (Coulomb)`.
     fn with_kind(&self) -> String {
         let title = with_article(&self.class.id);
         let (fitted, possible) = (self.titles(&self.fitted), self.titles(&self.possible));
@@ -246,7 +248,7 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// A kind with its coefficients: `Coulomb: torque 2.0 N m [1.9, 2.1]`.
+    /// Returns a kind with its coefficients: `Coulomb: torque 2.0 N m [1.9, 2.1]`.
     fn sized(&self, id: &str) -> String {
         let title = self.titles(&[id]).into_iter().next();
         let rows = effect(self.result, id).into_iter().flat_map(|row| &row.parameters);
@@ -267,7 +269,7 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// Kind, size, share of the gap, and the error without and with the class.
+    /// Returns kind, size, share of the gap, and the error without and with the class.
     fn sentence(&self) -> String {
         let mut parts: Vec<String> = self
             .shown
@@ -299,7 +301,8 @@ impl<'a> Told<'a> {
         if text.is_empty() { text } else { format!("{text}.") }
     }
 
-    /// The kind that the repaired simulator has where the data do not tell which, or the likeliest one.
+    /// Returns the kind of the repaired simulator if the data do not distinguish the kind, else the most
+    /// likely one.
     fn repaired_kind(&self) -> Option<&'a str> {
         let has_share = |id: &&&str| effect(self.result, id).is_some_and(|row| row.gap_share.is_some());
         self.possible.iter().find(has_share).or(self.possible.first()).copied()
@@ -319,8 +322,9 @@ impl<'a> Told<'a> {
     }
 }
 
-/// Share of the gap that has no name, 0 to 1: what the repaired simulator leaves, and a torque that was found and has no
-/// cause. `None` where there is no gap, where it is too small beside the noise to be divided, and in files of older versions.
+/// Returns the share of the gap that no named effect explains, 0 to 1: the left-over of the repaired
+/// simulator, and a torque that was found but has no known cause. `None` without a gap, if the gap is too
+/// small beside the noise to be divided, and in files of older versions.
 #[must_use]
 pub fn nameless_share(result: &DiagnosisResult) -> Option<f64> {
     let left = result.left_over?.share_of_gap;
@@ -334,8 +338,9 @@ pub fn nameless_share(result: &DiagnosisResult) -> Option<f64> {
     Some((left + (1.0 - left) * unnamed).clamp(0.0, 1.0))
 }
 
-/// Whether a calibration is off by more than chance and yet by nothing that matters: recalibrated, the error on parts that
-/// were not fitted is less than 5 % smaller. So it is after `trainer init`, whose numbers come from the same record.
+/// Returns `true` if the coefficients are off by more than chance but by an immaterial amount: recalibration
+/// lowers the held-out error by less than 5 %. This is so after `trainer init`, whose numbers come from the
+/// same record.
 #[must_use]
 pub fn is_calibrated_already(result: &DiagnosisResult) -> bool {
     const OF_NO_SIZE: f64 = 1.05;
@@ -343,8 +348,8 @@ pub fn is_calibrated_already(result: &DiagnosisResult) -> bool {
         && result.gap.nominal <= OF_NO_SIZE * result.gap.recalibrated
 }
 
-/// The verdict in a few sentences: what is certain, what is likely, what is open, how much of the gap has no name, and whether
-/// a unit seems mistaken.
+/// Returns the verdict in a few sentences: classes that are certain, likely or open, the share of the gap
+/// without a name, and a hint at a mistaken unit.
 #[must_use]
 pub fn verdict_sentence(result: &DiagnosisResult) -> String {
     let floor = floor(result);
@@ -381,7 +386,7 @@ pub fn verdict_sentence(result: &DiagnosisResult) -> String {
     plain_spaces(&(text + &units))
 }
 
-/// The sentence where effects are named.
+/// Returns the sentence for a verdict that names effects.
 fn effects(result: &DiagnosisResult, left: &str) -> String {
     let all: Vec<Told<'_>> =
         class_statements(result).iter().map(|one| Told::new(result, one.class)).collect();
@@ -406,7 +411,7 @@ fn effects(result: &DiagnosisResult, left: &str) -> String {
     let missing: Vec<String> = [lacks, shows].into_iter().filter(|text| !text.is_empty()).collect();
     let mut text = capitalized(&missing.join("; "));
     if text.is_empty() {
-        // Named by the rest angle or by a value alone, in no class of its own.
+        // Named only by the rest angle or by a value, so that no class is listed.
         let named: Vec<String> = result.verdict.effects.iter().map(|id| effect_title(result, id)).collect();
         text = format!("The simulator lacks {}", listed(&named, "and"));
     }
@@ -422,7 +427,7 @@ fn effects(result: &DiagnosisResult, left: &str) -> String {
     format!("{text}. Recalibrated and repaired, the simulator leaves {left}{share}.")
 }
 
-/// Error of the repaired simulator in units of the noise.
+/// Returns the error of the repaired simulator in units of the noise.
 fn floor(result: &DiagnosisResult) -> String {
     let gap = &result.gap;
     if gap.ratio_to_floor.is_finite() {
@@ -432,9 +437,9 @@ fn floor(result: &DiagnosisResult) -> String {
     }
 }
 
-/// Half a sentence on what is left and is no noise.
+/// Returns half a sentence on the part of the remaining error that is not noise.
 fn rest(result: &DiagnosisResult) -> &'static str {
-    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    // Beyond √2 noise floors, more than half of the remaining squared error is not noise.
     let [low, _] = result.gap.ratio_to_floor_interval_95;
     if low.powi(2) > 2.0 {
         "; most of the remaining error is not noise"
@@ -445,7 +450,7 @@ fn rest(result: &DiagnosisResult) -> &'static str {
     }
 }
 
-/// Half a sentence on the classes that are open.
+/// Returns half a sentence on the open classes.
 fn remaining(result: &DiagnosisResult) -> String {
     let all = class_statements(result);
     let open = all.iter().filter(|one| Told::new(result, one.class).standing() == Some(Standing::Open));
@@ -457,7 +462,7 @@ fn remaining(result: &DiagnosisResult) -> String {
     }
 }
 
-/// Half a sentence on the share of the gap that has no name.
+/// Returns half a sentence on the share of the gap without a name.
 fn nameless(result: &DiagnosisResult) -> Option<String> {
     let share = nameless_share(result)?;
     Some(match share < 5e-4 {
@@ -466,11 +471,11 @@ fn nameless(result: &DiagnosisResult) -> Option<String> {
     })
 }
 
-/// The torque along the position that has no name, where there is one.
+/// Returns half a sentence on a torque along the position without a known cause, if there is one.
 fn repeating(result: &DiagnosisResult) -> Option<String> {
     let row = result.row(VerdictStatus::Unknown).filter(|row| row.gap_share.is_some())?;
     let wavenumber = row.parameters.get("wavenumber")?;
-    // Of a length it is stated how far apart the waves are.
+    // For a displacement, the distance between the waves is stated.
     let often = if wavenumber.unit == "1" {
         format!("{} times a turn", significant(wavenumber.value, 3))
     } else {
@@ -479,7 +484,7 @@ fn repeating(result: &DiagnosisResult) -> Option<String> {
     Some(format!("a position-dependent torque of unknown cause repeats {often}"))
 }
 
-/// Whether the simulator's coefficients are more probably off than right.
+/// Returns `true` if the simulator's coefficients are more probably off than right.
 fn is_off(result: &DiagnosisResult) -> bool {
     result.probability(VerdictStatus::Calibration) > result.probability(VerdictStatus::None)
 }

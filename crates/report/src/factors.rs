@@ -1,13 +1,15 @@
-//! Factors by which units are mistaken for one another, recognized in the coefficients that a diagnosis finds.
+//! Detection of mistaken units: known factors between units, found in the coefficients of a diagnosis.
 
 use crate::format::significant;
 use results::{CalibratedRow, Calibration};
 use std::f64::consts::{PI, TAU};
 
-/// Part by which a ratio may miss a factor: coefficients that somebody looked up are a few percent off beside it.
+/// Largest relative difference between a ratio and a known factor; looked-up coefficients are off by a few
+/// percent as well.
 const NEAR: f64 = 0.1;
 
-/// A factor between two units, and what it asks: of the whole record, and of one coefficient.
+/// A factor between two units, and the questions that it raises: about the whole record, and about one
+/// coefficient.
 struct Known {
     factor: f64,
     whole: &'static str,
@@ -41,7 +43,7 @@ const KNOWN: &[Known] = &[
     },
 ];
 
-/// The known factor that a ratio is nearest to, either way, within a tenth.
+/// Returns the known factor nearest to a ratio or its inverse, within a tenth.
 fn known(ratio: f64) -> Option<&'static Known> {
     let size = ratio.max(1.0 / ratio);
     let off = |known: &&Known| (size / known.factor).ln().abs();
@@ -51,15 +53,15 @@ fn known(ratio: f64) -> Option<&'static Known> {
         .filter(|known| (size / known.factor - 1.0).abs() < NEAR)
 }
 
-/// A sentence where a driven record's coefficients are off by a known factor: all of them alike, where the input or what is
-/// observed is in another unit, or the inertia or the stiffness alone. Without an input only ratios of coefficients show,
-/// and a period that is so far off is refused.
+/// Returns a sentence if a driven record's coefficients are off by a known factor: all alike, if the input or
+/// the observed quantity is in another unit, or only the inertia or the stiffness. Without an input only
+/// ratios of coefficients can be found, and a period that far off is refused.
 pub(crate) fn of_units(calibration: &Calibration) -> Option<String> {
     let ratio = |row: &CalibratedRow| {
         let found = row.repaired.as_ref().or(row.recalibrated.as_ref())?.value / row.nominal;
         Some(found).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
     };
-    // An inertia is found where an input drives the system.
+    // The inertia is determined only if an input drives the system.
     let inertia = ratio(&calibration.inertia)?;
     let stiffness = ratio(&calibration.stiffness).unwrap_or(inertia);
     let alike = (stiffness / inertia - 1.0).abs() < NEAR;
@@ -132,7 +134,7 @@ mod tests {
         assert_eq!(of_units(&with(5.0, 20.0)), None);
     }
 
-    /// The inertia of a free swing is held: nothing tells a common factor.
+    /// The inertia of a free swing is held, so a common factor cannot be found.
     #[test]
     fn a_free_record_tells_no_factor() {
         let mut free = with(9.81, 9.81);

@@ -1,4 +1,4 @@
-//! The plots of a run: what each shows, in a sentence, and its data as CSV.
+//! Plots of a run, each with an explanation and its data as CSV.
 
 use std::borrow::Cow;
 
@@ -8,22 +8,22 @@ use crate::format;
 use crate::parse::Run;
 use crate::plot::{Axis, Drawing, Hue, Mark, Plot, Series};
 
-/// Rows of CSV under one plot, beyond which only every n-th is kept.
+/// Largest number of CSV rows under one plot; of longer tables only every n-th row is kept.
 const MOST_ROWS: usize = 3_000;
-/// Entries of one legend, beyond which the rest is counted.
+/// Largest number of entries in one legend; the remaining ones are counted.
 const MOST_ENTRIES: usize = 10;
 
-/// A plot with everything that stands around it.
+/// A plot with its title, explanation, notes and data.
 pub(crate) struct Figure {
-    /// Name of its anchor in the page.
+    /// Name of the plot's anchor in the page.
     pub(crate) id: Cow<'static, str>,
     pub(crate) title: Cow<'static, str>,
-    /// What it shows and how to read it.
+    /// Content of the plot and how to read it.
     pub(crate) explanation: String,
-    /// What is missing from it.
+    /// Statements on missing parts of the plot.
     pub(crate) notes: Vec<String>,
     pub(crate) drawing: Drawing,
-    /// What is drawn, as a table, and how many rows that is.
+    /// Drawn data as a CSV table, followed by its number of rows in words.
     pub(crate) csv: String,
     pub(crate) rows: String,
 }
@@ -97,7 +97,7 @@ fn loss(run: &Run) -> Option<Figure> {
         series.push(Series {
             label: name.to_owned(),
             hue: Hue::of_series(index),
-            // The hues repeat after four phases; the next four are told apart by their dashes.
+            // The hues repeat after four phases; the next four differ by their dashes.
             mark: if (index / 4).is_multiple_of(2) { Mark::Line } else { Mark::Dashes },
             points: phase.points(|row| row.loss),
         });
@@ -206,7 +206,7 @@ fn estimate_steps(run: &Run, value: impl Fn(&TraceRow) -> f64) -> Series {
     estimate(run, Mark::Line, points)
 }
 
-/// Consecutive rows of a trace that are part of the same phase; never empty.
+/// Consecutive rows of a trace in the same phase; never empty.
 struct Phase<'a> {
     rows: &'a [TraceRow],
 }
@@ -233,7 +233,7 @@ fn phases(trace: &[TraceRow]) -> Vec<Phase<'_>> {
     trace.chunk_by(|one, next| one.phase == next.phase).map(|rows| Phase { rows }).collect()
 }
 
-/// Every other phase, from its first step to the next phase's.
+/// Returns every other phase, from its first step to that of the next phase.
 fn shaded(trace: &[TraceRow]) -> Vec<(f64, f64)> {
     let phases = phases(trace);
     phases
@@ -257,12 +257,12 @@ fn numbers(values: &[f64]) -> Vec<String> {
     values.iter().map(|value| number(*value)).collect()
 }
 
-/// As few digits as read back as the same double.
+/// Formats a number with as few digits as read back as the same double.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || (1e-4..1e15).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
-/// The table as text, and how many rows of it that is, in words.
+/// Returns the table as CSV text, and its number of rows in words.
 pub(crate) fn csv<Row>(
     header: &[&str],
     rows: &[Row],
@@ -270,7 +270,7 @@ pub(crate) fn csv<Row>(
 ) -> (String, String) {
     let stride = rows.len().div_ceil(MOST_ROWS).max(1);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    // Writing to memory fails on no input; where it did, the table would end early.
+    // Writing to memory does not fail; if it did, the table would end early.
     let mut written = writer.write_record(header).is_ok();
     for row in rows.iter().step_by(stride) {
         written = written && writer.write_record(fields(row)).is_ok();

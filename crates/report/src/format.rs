@@ -1,8 +1,8 @@
-//! Numbers as text: one notation for the whole report.
+//! Formatting of numbers as text: one notation for the whole report.
 //!
-//! A true minus sign, `× 10ⁿ` with superscripts, narrow spaces between groups of three digits, and
-//! no break between a number and what belongs to it. Digits follow the uncertainty where one is
-//! known: two significant digits of the standard error, and the value to the same decimal place.
+//! Numbers have a true minus sign, `× 10ⁿ` with superscripts, narrow spaces between groups of three digits,
+//! and no break between a number and its unit. If the uncertainty is known, it determines the digits: two
+//! significant digits of the standard error, and the value to the same decimal place.
 
 use results::WithInterval;
 
@@ -11,12 +11,12 @@ const NO_BREAK: char = '\u{a0}';
 /// Separates groups of three digits (ISO 80000-1).
 const GROUP: char = '\u{202f}';
 const MINUS: char = '\u{2212}';
-/// What stands for NaN and the infinities.
+/// Text for NaN and the infinities.
 const NOT_FINITE: &str = "not finite";
-/// No double carries more significant decimal digits than this.
+/// Largest number of significant decimal digits that a double can carry.
 const MOST_DIGITS: i32 = 16;
 
-/// A value to `digits` significant digits, trailing zeros kept: `0.0087530`, `3.1 × 10⁻⁷`.
+/// Formats a value to `digits` significant digits with trailing zeros: `0.0087530`, `3.1 × 10⁻⁷`.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
@@ -32,7 +32,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A value that somebody wrote down, such as a tolerance: as few digits as tell it apart, `0.1`.
+/// Formats a value that a person wrote, such as a tolerance, with as few digits as identify it: `0.1`.
 #[must_use]
 pub fn exact(value: f64) -> String {
     if !value.is_finite() {
@@ -44,7 +44,7 @@ pub fn exact(value: f64) -> String {
     if is_plain(exponent) { typeset(&format!("{value}")) } else { times_power(&typeset(mantissa), exponent) }
 }
 
-/// A value to a number of decimal places, digits grouped: `−1 234.50`.
+/// Formats a value to a number of decimal places, with grouped digits: `−1 234.50`.
 #[must_use]
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
@@ -52,26 +52,25 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
     let text = format!("{value:.decimals$}");
     let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
-    // A value that rounds to zero has no sign left to show.
+    // A value that rounds to zero has no sign.
     typeset(if is_zero { text.trim_start_matches('-') } else { &text })
 }
 
-/// A count, digits grouped from five digits on: `9999`, `12 345`.
+/// Formats a count; digits are grouped if there are five or more: `9999`, `12 345`.
 #[must_use]
 pub fn count(value: u64) -> String {
     typeset(&value.to_string())
 }
 
-/// Standard error relative to its value below which it is left out.
+/// Standard error, relative to its value, below which it is left out.
 const NO_ERROR: f64 = 1e-9;
 
-/// Value and standard error, in the same unit: `0.008753 ± 0.000021`, `(3.12 ± 0.05) × 10⁻⁷`.
+/// Formats a value and its standard error in the same unit: `0.008753 ± 0.000021`, `(3.12 ± 0.05) × 10⁻⁷`.
 ///
-/// Without a standard error that says anything (zero, negative, not finite), the value to seven
-/// significant digits.
+/// Without a meaningful standard error (zero, negative, not finite), the value has seven significant digits.
 #[must_use]
 pub fn with_uncertainty(value: f64, std_error: f64) -> String {
-    // An error of rounding alone would ask for digits that nobody reads.
+    // A mere rounding error would require digits that nobody reads.
     if !value.is_finite() || !std_error.is_finite() || std_error <= NO_ERROR * value.abs() {
         return significant(value, 7);
     }
@@ -87,8 +86,8 @@ pub fn with_uncertainty(value: f64, std_error: f64) -> String {
     if power == 0 { body } else { times_power(&format!("({body})"), power) }
 }
 
-/// The two ends of an interval, in the same unit, to the digits that its width warrants:
-/// `[0.1901, 0.1919]`.
+/// Formats the two ends of an interval in the same unit, to the digits that its width justifies: `[0.1901,
+/// 0.1919]`.
 #[must_use]
 pub fn interval(ends: [f64; 2]) -> String {
     let [low, high] = ends;
@@ -105,21 +104,22 @@ pub fn interval(ends: [f64; 2]) -> String {
     if power == 0 { body } else { times_power(&body, power) }
 }
 
-/// A share in percent that is an error, so that two significant digits say all: `3.1 × 10⁻⁷ %`.
+/// Formats an error in percent, for which two significant digits suffice: `3.1 × 10⁻⁷ %`.
 #[must_use]
 pub fn percent(value: f64) -> String {
     quantity(&significant(value, 2), "%")
 }
 
-/// A share in percent, a decimal behind the point; three where a share below 1 would look like the whole: `99.970 %`.
+/// Formats a share in percent with one decimal, or with three if a share below 1 would look like 100 %:
+/// `99.970 %`.
 #[must_use]
 pub fn share(value: f64) -> String {
     let left = (1.0 - value).abs();
     quantity(&fixed(100.0 * value, if left < 0.001 && left > 0.0 { 3 } else { 1 }), "%")
 }
 
-/// A probability to three decimals: what rounds to none or to certainty is said to be small or large, however many zeros or
-/// nines it has.
+/// Formats a probability to three decimals. Values that would round to 0 or 1 are given as below 0.001 or
+/// above 0.999.
 #[must_use]
 pub fn probability(value: f64) -> String {
     if value > 0.0 && value < 5e-4 {
@@ -131,10 +131,11 @@ pub fn probability(value: f64) -> String {
     }
 }
 
-/// What stands for an estimate whose interval says nothing.
+/// Text for an estimate whose interval carries no information.
 pub const UNDETERMINED: &str = "not determined by these data";
 
-/// An estimate with its 95 % interval, to the digits that the interval warrants: `484.12 N m [483.90, 484.34]`.
+/// Formats an estimate with its 95 % interval, to the digits that the interval justifies: `484.12 N m
+/// [483.90, 484.34]`.
 #[must_use]
 pub fn estimate(value: f64, interval_95: [f64; 2], unit: &str) -> String {
     let [low, high] = interval_95;
@@ -147,7 +148,7 @@ pub fn estimate(value: f64, interval_95: [f64; 2], unit: &str) -> String {
     format!("{} {}", quantity(&digits, unit), interval(interval_95))
 }
 
-/// A value to the decimal place of its standard error's second digit.
+/// Formats a value to the decimal place of its standard error's second digit.
 fn fixed_beside(value: f64, std_error: f64) -> String {
     let exponent = exponent_after_rounding(value.abs().max(std_error), 1);
     let power = if is_plain(exponent) { 0 } else { exponent };
@@ -156,21 +157,21 @@ fn fixed_beside(value: f64, std_error: f64) -> String {
     if power == 0 { text } else { times_power(&text, power) }
 }
 
-/// A share with its interval: `71.0 % [65.2 %, 77.1 %]`.
+/// Formats a share with its interval: `71.0 % [65.2 %, 77.1 %]`.
 #[must_use]
 pub fn share_with_interval(of: &WithInterval) -> String {
     let [low, high] = of.interval_95.map(share);
     format!("{} [{low}, {high}]", share(of.value))
 }
 
-/// A unit symbol as it stands behind a number: that of a pure number, `1`, says nothing.
+/// Returns a unit symbol as it follows a number; the unit `1` of a pure number becomes empty.
 #[must_use]
 pub fn unit(symbol: &str) -> &str {
     if symbol == "1" { "" } else { symbol }
 }
 
-/// A span of time to three significant digits, in the unit from nanoseconds to seconds that leaves
-/// no leading zeros: `1.20 µs`, `45.1 s`.
+/// Formats a time span to three significant digits, in the unit from nanoseconds to seconds that leaves no
+/// leading zeros: `1.20 µs`, `45.1 s`.
 #[must_use]
 pub fn duration(seconds: f64) -> String {
     let (scale, unit) = match seconds.abs() {
@@ -183,26 +184,26 @@ pub fn duration(seconds: f64) -> String {
     quantity(&significant(seconds * scale, 3), unit)
 }
 
-/// A text for files and for whoever searches them: with ordinary spaces, as typed.
+/// Replaces non-breaking and narrow spaces by ordinary ones, for files and searches.
 #[must_use]
 pub fn plain_spaces(text: &str) -> String {
     text.replace([NO_BREAK, GROUP], " ")
 }
 
-/// A number and its unit, kept on one line. An empty unit leaves the number alone.
+/// Formats a number and its unit, kept on one line. An empty unit leaves only the number.
 #[must_use]
 pub fn quantity(number: &str, unit: &str) -> String {
     if unit.is_empty() { number.to_owned() } else { format!("{number}{NO_BREAK}{unit}") }
 }
 
-/// A power of ten, `10⁻⁶`; the zeroth is `1`.
+/// Formats a power of ten: `10⁻⁶`; the zeroth is `1`.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
     if exponent == 0 { "1".to_owned() } else { format!("10{}", superscript(exponent)) }
 }
 
-/// Labels of evenly spaced ticks from `low` to `high`, `step` apart: as many decimals as the step
-/// needs, and `× 10ⁿ` for axes of very large or very small numbers.
+/// Formats the label of one of evenly spaced ticks from `low` to `high`, `step` apart: with as many decimals
+/// as the step needs, and with `× 10ⁿ` on axes of very large or very small numbers.
 pub(crate) fn tick(value: f64, low: f64, high: f64, step: f64) -> String {
     let largest = exponent_after_rounding(low.abs().max(high.abs()), 1);
     let finest = exponent_after_rounding(step, 1);
@@ -214,7 +215,7 @@ pub(crate) fn tick(value: f64, low: f64, high: f64, step: f64) -> String {
     if value.abs() < step / 2.0 { "0".to_owned() } else { times_power(&text, largest) }
 }
 
-/// Decimal places that show two significant digits of `std_error`, and no digit of `value` that a
+/// Returns the decimal places that show two significant digits of `std_error`, and no digit of `value` that a
 /// double does not carry.
 fn decimals_for(value: f64, std_error: f64) -> usize {
     let carried = MOST_DIGITS - 1 - exponent_after_rounding(value, 1);
@@ -222,29 +223,29 @@ fn decimals_for(value: f64, std_error: f64) -> usize {
     places(wanted.min(carried))
 }
 
-/// Decimal places, none where a number ends before its point.
+/// Returns decimal places: zero if a number ends before its decimal point.
 fn places(wanted: i32) -> usize {
-    // Only a negative number is none.
+    // Only a negative number fails to convert.
     usize::try_from(wanted).unwrap_or(0)
 }
 
-/// The decimal exponent of a value once it is rounded to `digits` significant digits, so that
-/// 9.96 to two digits counts as 10. Zero has exponent 0.
+/// Returns the decimal exponent of a value rounded to `digits` significant digits, so that 9.96 to two digits
+/// counts as 10. Zero has exponent 0.
 fn exponent_after_rounding(value: f64, digits: usize) -> i32 {
     let decimals = digits.saturating_sub(1);
     split_exponent(&format!("{value:.decimals$e}")).1
 }
 
-/// `"1.5e-7"` to `("1.5", -7)`.
+/// Splits `"1.5e-7"` into `("1.5", -7)`.
 fn split_exponent(text: &str) -> (&str, i32) {
     match text.split_once('e') {
-        // The program wrote it.
+        // The exponent was written by this program, so it parses.
         Some((mantissa, exponent)) => (mantissa, exponent.parse().unwrap_or(0)),
         None => (text, 0),
     }
 }
 
-/// Whether numbers of this decimal exponent are written without a power of ten.
+/// Returns `true` if numbers of this decimal exponent are written without a power of ten.
 fn is_plain(exponent: i32) -> bool {
     (-4..6).contains(&exponent)
 }
@@ -277,7 +278,7 @@ fn superscript(exponent: i32) -> String {
         .collect()
 }
 
-/// A plain decimal numeral with a true minus sign and its integer part in groups of three, where
+/// Typesets a plain decimal numeral with a true minus sign, and with its integer part in groups of three if
 /// that part has five digits or more.
 fn typeset(numeral: &str) -> String {
     let (sign, rest) = match numeral.strip_prefix('-') {
@@ -308,7 +309,7 @@ fn typeset(numeral: &str) -> String {
 mod tests {
     use super::*;
 
-    /// The non-breaking characters as plain spaces, to keep the expectations readable.
+    /// Replaces the non-breaking characters by plain spaces, to keep the expectations readable.
     fn plain(text: &str) -> String {
         text.replace([NO_BREAK, GROUP], " ")
     }

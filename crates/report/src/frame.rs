@@ -1,4 +1,4 @@
-//! What every page has: head, origin, verdict, warnings, pipelines, data and files.
+//! Parts of every page: head, origin, verdict, warnings, pipelines, data and files.
 
 use askama::Template;
 use results::{DataSummary, OracleSummary, PipelineRow};
@@ -11,33 +11,34 @@ use crate::tables::{self, Fact, PipelineView};
 use crate::verdict::{self, Origin, Verdict};
 use crate::{ReportError, RunTexts};
 
-/// What `base.html` and the templates that pages include are filled with.
+/// Values for `base.html` and for the templates that pages include.
 pub(crate) struct Frame<'a> {
     pub(crate) hues: &'static [Hue],
-    /// Of the run.
+    /// Name of the run.
     pub(crate) name: &'a str,
-    /// What kind of run, in a few words.
+    /// Kind of the run, in a few words.
     pub(crate) kicker: &'static str,
     pub(crate) verdict: Verdict,
     pub(crate) origin: Origin,
     pub(crate) warnings: Vec<String>,
-    /// The next steps, a sentence or two each; directly beneath the verdict.
+    /// Next steps, a sentence or two each, directly below the verdict.
     pub(crate) next: Vec<String>,
     pub(crate) pipelines: Vec<PipelineView<'a>>,
     pub(crate) data: Vec<Fact>,
     pub(crate) findings: Vec<String>,
-    /// What the files are, and their texts.
+    /// Descriptions of the files, with their texts.
     pub(crate) files: [(&'static str, &'a str); 3],
 }
 
 impl<'a> Frame<'a> {
-    /// The frame with a sentence on pipelines or clocks that disagree before all other warnings.
+    /// Returns the frame with a sentence on disagreeing pipelines or clocks before all other warnings.
     pub(crate) fn disagreeing(mut self, disagreement: Option<&String>) -> Self {
         self.warnings.splice(0..0, disagreement.cloned());
         self
     }
 
-    /// The frame without warnings, next steps, pipelines, data and findings; its files are those of a run's folder.
+    /// Creates a frame without warnings, next steps, pipelines, data and findings; its files are those of a
+    /// run's folder.
     pub(crate) fn bare(texts: &RunTexts<'a>, kicker: &'static str, verdict: Verdict, origin: Origin) -> Self {
         Self {
             hues: &Hue::ALL,
@@ -90,15 +91,15 @@ impl Frame<'_> {
     }
 }
 
-/// The page of a template, with its contents at the top and its terms explained at the end.
+/// Renders the page of a template, with its table of contents at the top and its glossary at the end.
 pub(crate) fn finish(page: &impl Template) -> Result<String, ReportError> {
     let html = glossary::explained(&page.render()?, "<!-- terms -->");
     let contents = contents(&html);
     Ok(html.replacen("<!-- contents -->\n", &contents, 1))
 }
 
-/// Links to the sections: every heading of second rank that has an id. Texts from files are escaped and cannot look
-/// like one. Nothing for a page of few sections.
+/// Returns links to the sections: all second-level headings with an id. Texts from files are escaped, so they
+/// cannot look like one. Empty for a page of few sections.
 fn contents(html: &str) -> String {
     const FEWEST: usize = 3;
     let headings: Vec<(&str, &str)> = html

@@ -1,17 +1,18 @@
-//! Terms that a page uses, with their definitions: one table, and links to it from where a term first stands.
+//! Glossary of a page: definitions of its terms, and a link to each definition from the first use of the
+//! term.
 
 /// A term and its definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Term {
-    /// The term, as it heads its definition.
+    /// Term at the head of its definition.
     pub name: &'static str,
-    /// Spellings that are looked for in a text, the longest first; letters may be large or small.
+    /// Spellings to search for in a text, the longest first, ignoring case.
     pub spellings: &'static [&'static str],
-    /// One or two sentences.
+    /// Definition in one or two sentences.
     pub definition: &'static str,
 }
 
-/// Every term that is defined, in alphabetical order.
+/// All defined terms, in alphabetical order.
 pub const TERMS: &[Term] = &[
     Term {
         name: "× noise",
@@ -149,7 +150,7 @@ pub const TERMS: &[Term] = &[
     },
 ];
 
-/// Elements whose text is left as it is: code, plots, headings, and what a click has an effect on already.
+/// Elements whose text stays unchanged: code, plots, headings, and elements that already react to a click.
 const SKIPPED: [&str; 12] = [
     "script",
     "style",
@@ -165,8 +166,8 @@ const SKIPPED: [&str; 12] = [
     "ul class=\"legend\"",
 ];
 
-/// The page with a link from the first place of each term to its definition, and the definitions at `place`, a mark
-/// in the page. Text of a page is escaped, so that every tag is one of the templates.
+/// Returns the page with a link from the first use of each term to its definition, and with the definitions
+/// at `place`, a mark in the page. Text in a page is escaped, so every tag comes from the templates.
 pub(crate) fn explained(html: &str, place: &str) -> String {
     let mut page = String::with_capacity(html.len() + 8_000);
     let mut used: Vec<&Term> = Vec::new();
@@ -198,7 +199,7 @@ fn opens(tag: &str, name: &str) -> bool {
     rest.is_some_and(|rest| rest.starts_with(['>', ' ', '\n']))
 }
 
-/// A stretch of text in which terms that were not met before are links.
+/// Returns a text in which the first use of each term not in `used` is a link.
 fn linked(text: &str, used: &mut Vec<&Term>) -> String {
     let first = TERMS
         .iter()
@@ -218,7 +219,7 @@ fn linked(text: &str, used: &mut Vec<&Term>) -> String {
     format!("{before}{link}{}", linked(after, used))
 }
 
-/// Where words stand in a text by themselves, whatever the case of their letters.
+/// Returns the position of words that stand by themselves in a text, ignoring case.
 fn find(text: &str, words: &str) -> Option<usize> {
     let is_letter =
         |letter: Option<char>| letter.is_some_and(|letter| letter.is_alphanumeric() || letter == '-');
@@ -260,7 +261,7 @@ fn section(used: &[&Term]) -> String {
     )
 }
 
-/// A page without the links to its terms, so that tests read its sentences whole.
+/// Returns a page without the links to its terms, so that tests can read its sentences as a whole.
 #[cfg(test)]
 pub(crate) fn unexplained(html: &str) -> String {
     let mut parts = html.split("<a class=\"term\"");

@@ -1,14 +1,14 @@
-//! From a run's results to one HTML file, a pure function.
+//! Renders a run's results as one HTML file, as a pure function.
 //!
-//! [`render`] takes the texts of a run folder and gives back the page: no disk, no clock, no
-//! network, and no number in it that is not in those texts or follows from numbers that are by a
-//! difference, a ratio or a conversion of units. The same texts give the same bytes.
+//! [`render`] takes the texts of a run folder and returns the page. It uses no disk, no clock and no network.
+//! Every number on the page is in those texts or follows from them by a difference, a ratio or a conversion
+//! of units. The same texts give the same bytes.
 //!
-//! What was run decides the page: [`render_run`] shows one estimator's estimate,
-//! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on peaks that they
-//! did not see, [`render_diagnosis`] where the gap between a simulator and records lies, [`render_trials`] how often a
-//! diagnosis is right, [`render_run_table`] the runs of a sweep. The tables of comparison and prediction
-//! [`comparison_markdown`] and [`prediction_markdown`] give as Markdown too.
+//! The task of the run determines the page: [`render_run`] shows one estimator's estimate,
+//! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on held-out peaks,
+//! [`render_diagnosis`] the gap between a simulator and records, [`render_trials`] the accuracy of a
+//! diagnosis, [`render_run_table`] the runs of a sweep. [`comparison_markdown`] and [`prediction_markdown`]
+//! return the tables of a comparison and of a prediction study as Markdown.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -51,13 +51,12 @@ pub use texts::RunTexts;
 pub use trials::class_rows;
 pub use verdict::in_a_sentence;
 
-/// The report on a run, whatever it was asked for: a complete HTML page that loads nothing.
-/// Its scripts stand in it.
+/// Renders the report on a run of any task: a self-contained HTML page, including its scripts.
 ///
 /// # Errors
 ///
-/// [`ReportError`] where the result or the envelope is missing, or where a file does not have the
-/// form that a run gives it; the message says which file, where, and what to do.
+/// [`ReportError`] if the result or the envelope is missing, or if a file does not have the form that a run
+/// gives it. The message states the file, the place and the remedy.
 pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     match parse::task(texts.result)? {
         parse::Task::Estimate => render_run(texts),
@@ -72,62 +71,63 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     }
 }
 
-/// The report on an estimation, `task = "estimate"`.
+/// Renders the report on an estimation, `task = "estimate"`.
 ///
 /// # Errors
 ///
-/// As [`render`], and where the run was asked for something else.
+/// As [`render`], and if the run has a different task.
 pub fn render_run(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     page::render(texts, &parse::parse(texts)?)
 }
 
-/// The report on a comparison, `task = "compare"`. Of `texts`, the trace may be empty.
+/// Renders the report on a comparison, `task = "compare"`. The trace in `texts` may be empty.
 ///
 /// # Errors
 ///
-/// As [`render`], and where the run was asked for something else.
+/// As [`render`], and if the run has a different task.
 pub fn render_comparison(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     comparison::render(texts, &parse::parse_comparison(texts)?)
 }
 
-/// The report on a study of held-out prediction, `task = "predict"`. Of `texts`, trace and envelope may be
-/// empty.
+/// Renders the report on a study of held-out prediction, `task = "predict"`. Trace and envelope in `texts`
+/// may be empty.
 ///
 /// # Errors
 ///
-/// As [`render`], and where the run was asked for something else.
+/// As [`render`], and if the run has a different task.
 pub fn render_prediction(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     prediction::render(texts, &parse::parse_prediction(texts)?)
 }
 
-/// The report on a diagnosis, whose result is `diagnosis.json` and whose `config` is the repaired simulator.
+/// Renders the report on a diagnosis. Its result is `diagnosis.json`, and its `config` is the repaired
+/// simulator.
 ///
 /// # Errors
 ///
-/// As [`render`], and where the run was asked for something else.
+/// As [`render`], and if the run has a different task.
 pub fn render_diagnosis(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     diagnosis::render(texts, &parse::parse_diagnosis(texts)?)
 }
 
-/// The report on trials whose effect was withheld, `task = "trials"`.
+/// Renders the report on withheld-effect trials, `task = "trials"`.
 ///
 /// # Errors
 ///
-/// As [`render`], and where the run was asked for something else.
+/// As [`render`], and if the run has a different task.
 pub fn render_trials(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     trials::render(texts, &parse::trials_result(texts.result)?)
 }
 
-/// The page of a table of runs: of a sweep or of runs put side by side.
+/// Renders the page of a table of runs: those of a sweep, or runs put side by side.
 ///
 /// # Errors
 ///
-/// As [`render`], and where the run was asked for something else.
+/// As [`render`], and if the run has a different task.
 pub fn render_run_table(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     run_table::render(texts, &parse::run_table(texts.result)?)
 }
 
-/// The verdicts and the tables of a study of held-out prediction as GitHub Markdown, from its
+/// Returns the verdicts and the tables of a study of held-out prediction as GitHub Markdown, from its
 /// `result.json`.
 ///
 /// # Errors
@@ -137,7 +137,7 @@ pub fn prediction_markdown(result: &str) -> Result<String, ReportError> {
     Ok(prediction::markdown(&parse::prediction_result(result)?))
 }
 
-/// The verdict and the tables of a comparison as GitHub Markdown, from its `result.json`.
+/// Returns the verdict and the tables of a comparison as GitHub Markdown, from its `result.json`.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! The page on one run: the template and what it is filled with.
+//! Page of one run: the template and its values.
 
 use askama::Template;
 
@@ -100,7 +100,7 @@ mod tests {
         assert!(html.contains("&#60;script&#62;alert(1)"));
     }
 
-    /// Scripts are those of this crate, to the byte that the policy names.
+    /// The scripts are those of this crate, to the byte that the policy names.
     #[test]
     fn the_page_loads_nothing_and_runs_its_own_scripts_only() {
         let html = Sample::new().render().unwrap();
@@ -157,7 +157,7 @@ mod tests {
         for (svg, _) in drawn {
             assert!(!svg.contains("NaN") && !svg.contains("inf\"") && !svg.contains("inf "));
         }
-        // A trace of nothing but NaN leaves its plots out, and says so.
+        // A trace of nothing but NaN leaves out its plots, and the page states it.
         for row in &mut sample.trace {
             row.loss = f64::NAN;
             row.decay_rate = f64::NAN;

@@ -1,4 +1,4 @@
-//! From the texts of a run folder to typed values.
+//! Parsing of the texts of a run folder into typed values.
 
 use results::{
     ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, FLEET_SCHEMA,
@@ -11,33 +11,33 @@ use serde::de::DeserializeOwned;
 
 use crate::{ReportError, RunTexts};
 
-/// The parsed content of the folder of an estimation.
+/// Parsed content of the folder of an estimation.
 pub(crate) struct Run {
     pub(crate) result: EstimationResult,
-    /// Empty where the method takes no steps.
+    /// Empty if the method takes no steps.
     pub(crate) trace: Vec<TraceRow>,
     pub(crate) envelope: Vec<EnvelopeRow>,
 }
 
-/// The parsed content of the folder of a comparison.
+/// Parsed content of the folder of a comparison.
 pub(crate) struct Comparison {
     pub(crate) result: ComparisonResult,
     pub(crate) envelope: Vec<EnvelopeRow>,
 }
 
-/// The parsed content of the folder of a study of held-out prediction.
+/// Parsed content of the folder of a study of held-out prediction.
 pub(crate) struct Prediction {
     pub(crate) result: PredictionResult,
     pub(crate) rows: Vec<PredictionCsvRow>,
 }
 
-/// The parsed content of the folder of a diagnosis.
+/// Parsed content of the folder of a diagnosis.
 pub(crate) struct Diagnosis {
     pub(crate) result: DiagnosisResult,
     pub(crate) series: Vec<SeriesRow>,
 }
 
-/// The parsed content of the folder of a learning study.
+/// Parsed content of the folder of a learning study.
 pub(crate) struct Learning {
     pub(crate) result: LearnResult,
     pub(crate) runs: Vec<LearnSeriesRow>,
@@ -45,7 +45,7 @@ pub(crate) struct Learning {
     pub(crate) trace: Vec<LearnTraceRow>,
 }
 
-/// What a run was asked for.
+/// Task of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
     Estimate,
@@ -53,9 +53,9 @@ pub(crate) enum Task {
     Learn,
     Predict,
     Diagnose,
-    /// Several rigs of one build.
+    /// A joint diagnosis of several rigs of one build.
     Rigs,
-    /// The answers of a batch.
+    /// A fleet: the diagnoses of a batch.
     Fleet,
     Trials,
     /// A table of runs: `"sweep"` or `"runs"`.
@@ -63,7 +63,7 @@ pub(crate) enum Task {
 }
 
 impl Task {
-    /// As the field `task` has it.
+    /// Returns the name used in the field `task`.
     fn name(self) -> &'static str {
         match self {
             Self::Estimate => "estimate",
@@ -79,11 +79,11 @@ impl Task {
     }
 }
 
-/// The fields that every schema has.
+/// Fields of every schema.
 #[derive(Deserialize)]
 struct Tag {
     schema: String,
-    /// Looked at only once the schema is known to be this program's.
+    /// Only read if the schema is one of this program's.
     #[serde(default)]
     task: String,
 }
@@ -92,7 +92,7 @@ pub(crate) fn parse(texts: &RunTexts<'_>) -> Result<Run, ReportError> {
     Ok(Run {
         envelope: envelope(texts.envelope)?,
         result: result(texts.result, Task::Estimate)?,
-        // No rows is a valid trace: a closed-form method takes no steps.
+        // A trace without rows is valid: a closed-form method takes no steps.
         trace: table("trace.csv", texts.trace)?,
     })
 }
@@ -106,7 +106,7 @@ pub(crate) fn comparison_result(text: &str) -> Result<ComparisonResult, ReportEr
 }
 
 pub(crate) fn parse_prediction(texts: &RunTexts<'_>) -> Result<Prediction, ReportError> {
-    // No rows is a valid table: no method may have predicted anything.
+    // A table without rows is valid: perhaps no method predicted anything.
     Ok(Prediction {
         result: prediction_result(texts.result)?,
         rows: table("predictions.csv", texts.predictions)?,
@@ -114,7 +114,7 @@ pub(crate) fn parse_prediction(texts: &RunTexts<'_>) -> Result<Prediction, Repor
 }
 
 pub(crate) fn parse_learning(texts: &RunTexts<'_>) -> Result<Learning, ReportError> {
-    // No rows are valid tables: no method may have learned anything.
+    // Tables without rows are valid: perhaps no method learned anything.
     Ok(Learning {
         result: result(texts.result, Task::Learn)?,
         runs: table("predictions.csv", texts.predictions)?,
@@ -130,7 +130,7 @@ pub(crate) fn prediction_result(text: &str) -> Result<PredictionResult, ReportEr
 pub(crate) fn parse_diagnosis(texts: &RunTexts<'_>) -> Result<Diagnosis, ReportError> {
     Ok(Diagnosis {
         result: result(texts.result, Task::Diagnose)?,
-        // Without its series a diagnosis has fewer plots.
+        // Without its series, a diagnosis has fewer plots.
         series: table("series.csv", texts.series)?,
     })
 }
@@ -167,13 +167,13 @@ fn result<Content: DeserializeOwned>(text: &str, expected: Task) -> Result<Conte
     serde_json::from_str(text).map_err(json_error)
 }
 
-/// What the run was asked for, by its `result.json`.
+/// Returns the task of the run, from its `result.json`.
 pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     if text.trim().is_empty() {
         return Err(ReportError::Empty { file: "result.json" });
     }
-    // The tag first: a result of another schema is to be named as such, not by the first field
-    // that it happens to lack.
+    // The tag is read first, so that a result of another schema is reported as such, and not by the first
+    // field that it happens to lack.
     let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
     if tag.schema == DIAGNOSIS_SCHEMA {
         return Ok(Task::Diagnose);

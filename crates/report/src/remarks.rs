@@ -1,17 +1,17 @@
-//! Sentences that a page and the terminal share: one function makes each.
+//! Sentences shared by a page and the terminal, each made by one function.
 
 use results::{BarRow, DataSummary, DiagnosisResult, OracleSummary, TruthComparison, VerdictStatus};
 
 use crate::format;
 
-/// Lag-one autocorrelation of residuals beyond which their standard error misleads.
+/// Lag-one autocorrelation of residuals beyond which their standard error is misleading.
 const CORRELATED: f64 = 0.5;
-/// Share of the variance of ln A that a line leaves over, below which the residuals are too small to matter, whatever
-/// their pattern. Of an exponential without noise the pipelines leave 3e-6 and less; at 1e-5 the standard error of λ is
-/// below a thousandth.
+/// Share of the variance of ln A in the residuals of a line below which they are too small to matter,
+/// whatever their pattern. For an exponential without noise, the pipelines leave at most 3e-6; at 1e-5 the
+/// standard error of λ is below a thousandth.
 const NEGLIGIBLE: f64 = 1e-5;
 
-/// Findings about a record file: its time stamps first, then what reading it brought up.
+/// Returns findings about a record file: time stamps first, then remarks from reading it.
 #[must_use]
 pub fn noticed(data: &DataSummary) -> Vec<String> {
     let mut sentences = Vec::new();
@@ -30,14 +30,15 @@ pub fn noticed(data: &DataSummary) -> Vec<String> {
     sentences
 }
 
-/// Whether all that a diagnosis names lies in the measurement chain, and nothing in the equation of motion: `none` is then
-/// more probable than not beside the effects.
+/// Returns `true` if everything that a diagnosis names lies in the measurement chain, and nothing in the
+/// equation of motion: `none` is then more probable than not beside the effects.
 #[must_use]
 pub fn is_of_the_chain_only(result: &DiagnosisResult) -> bool {
     result.verdict.status == VerdictStatus::Effect && result.probability(VerdictStatus::None) > 0.5
 }
 
-/// Rows about the truth of a simulated record and how far the answer is from it: a name and a sentence each.
+/// Returns rows on the truth of a simulated record and the distance of the answer from it: a name and a
+/// sentence each.
 #[must_use]
 pub fn truth_rows(known: &TruthComparison) -> Vec<(&'static str, String)> {
     let mut rows = Vec::new();
@@ -54,25 +55,26 @@ pub fn truth_rows(known: &TruthComparison) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// Manner in which a file was read, without the words `read as`; `None` in results of versions that did not say it.
+/// Returns the interpretation of a file without the words `read as`; `None` in results of versions that did
+/// not state it.
 pub(crate) fn read_as(sentence: &str) -> Option<&str> {
     let text = sentence.strip_prefix("read as: ").unwrap_or(sentence);
     (!text.is_empty()).then_some(text)
 }
 
-/// A sentence without the full stop that is about to follow.
+/// Returns a sentence without its full stop, because one will follow.
 fn ended(sentence: &str) -> &str {
     sentence.strip_suffix('.').unwrap_or(sentence)
 }
 
-/// Whether a line through ln A leaves nothing over that would matter: rounding and the placing of peaks leave
-/// patterns of their own, which say nothing about the decay.
+/// Returns `true` if a line through ln A leaves only immaterial residuals: rounding and the placing of peaks
+/// have patterns of their own, which carry no information about the decay.
 #[must_use]
 pub fn is_exponential(r_squared: f64) -> bool {
     1.0 - r_squared < NEGLIGIBLE
 }
 
-/// Reasons to take care with the reference's standard errors.
+/// Returns warnings about the reference's standard errors.
 #[must_use]
 pub fn warnings(reference: &OracleSummary) -> Vec<String> {
     let correlation = reference.residual_autocorrelation;
@@ -87,7 +89,7 @@ pub fn warnings(reference: &OracleSummary) -> Vec<String> {
     )]
 }
 
-/// State of a bar in words: `within chance` only where the interval holds the bar.
+/// Returns the state of a bar in words: `within chance` only if the interval contains the bar.
 #[must_use]
 pub fn bar_state(row: &BarRow) -> &str {
     let [low, high] = row.interval_95;

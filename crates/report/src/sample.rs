@@ -1,4 +1,4 @@
-//! A run as it might have been, for the tests.
+//! A made-up run for the tests.
 
 use results::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary, Origin,
@@ -11,7 +11,7 @@ use crate::{ReportError, RunTexts, render_run};
 const OMEGA: f64 = 21.8166;
 const DECAY_RATE: f64 = 0.190_961;
 
-/// A run folder that tests change before they make its report.
+/// A run folder, which tests change before they make its report.
 pub(crate) struct Sample {
     pub(crate) name: String,
     pub(crate) config: String,
@@ -19,7 +19,7 @@ pub(crate) struct Sample {
     pub(crate) result: EstimationResult,
     pub(crate) trace: Vec<TraceRow>,
     pub(crate) envelope: Vec<EnvelopeRow>,
-    /// These stand in for the texts that would be written from the values above.
+    /// Texts that replace the ones written from the values above.
     pub(crate) result_text: Option<String>,
     pub(crate) trace_text: Option<String>,
     pub(crate) envelope_text: Option<String>,
@@ -72,7 +72,7 @@ pub(crate) fn table<Row: Serialize>(rows: &[Row]) -> String {
     String::from_utf8(writer.into_inner().unwrap()).unwrap()
 }
 
-/// Uniform on −1 to 1, the same in every run.
+/// Pseudo-random numbers, uniform on −1 to 1 and the same in every run.
 struct Noise(u64);
 
 impl Noise {
@@ -249,9 +249,9 @@ fn pipeline(
     }
 }
 
-/// Writes the sample pages into the folder that `REPORT_SAMPLES` names, to be looked at.
+/// Writes the sample pages into the folder that `REPORT_SAMPLES` names, for visual inspection.
 #[test]
-// The one place of the crate that touches a disk, and only when asked to by name.
+// The only place of the crate that touches a disk, and only when called by name.
 #[allow(clippy::disallowed_methods)]
 #[ignore = "writes files; for looking at the page after a change of its template"]
 fn write_samples() {
@@ -276,7 +276,7 @@ fn write_samples() {
     sample.trace.clear();
     std::fs::write(folder.join("unstated.html"), sample.render().unwrap()).unwrap();
 
-    // What a page has to withstand rather than what it is for.
+    // Extreme values that a page has to withstand.
     let mut sample = Sample::new();
     sample.name = "x".repeat(200);
     sample.result.estimator_title = "An estimator with a title that goes on and on and on".into();

@@ -1,13 +1,13 @@
-//! Scripts of a page: uPlot and what binds plots, buttons and tables to it.
+//! Scripts of a page: uPlot, and the scripts that connect plots, buttons and tables to it.
 //!
-//! They stand in the page itself, and its content security policy names each by its digest: whatever else came to
-//! stand in a page would not run.
+//! The scripts are part of the page, and its content security policy names each by its digest: no other
+//! script in a page could run.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-/// Their texts, in the order in which they run.
+/// Texts of the scripts, in the order in which they run.
 pub(crate) const SCRIPTS: [&str; 2] = [
     include_str!("../assets/uPlot.iife.min.js"),
     concat!(
@@ -17,16 +17,16 @@ pub(crate) const SCRIPTS: [&str; 2] = [
     ),
 ];
 
-/// uPlot's style sheet.
+/// Style sheet of uPlot.
 pub(crate) const STYLE: &str = include_str!("../assets/uPlot.min.css");
 
-/// The sources that the content security policy allows scripts from.
+/// Returns the script sources that the content security policy allows.
 pub(crate) fn policy() -> String {
     let source = |script: &&str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(script.as_bytes())));
     SCRIPTS.iter().map(source).collect::<Vec<_>>().join(" ")
 }
 
-/// A page without its scripts, which have to be there to the byte that the policy names.
+/// Returns a page without its scripts, after checking them to the byte that the policy names.
 #[cfg(test)]
 pub(crate) fn stripped(html: &str) -> String {
     assert!(html.contains(&format!("script-src {}\"", policy())));

@@ -1,10 +1,10 @@
-//! The tables of the page: which number stands where, and to how many digits.
+//! Tables of the page: cells, and the number of their digits.
 
 use results::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow, TruthComparison};
 
 use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
 
-/// A quantity and its value, both as they stand on the page.
+/// A quantity and its value, as shown on the page.
 pub(crate) struct Fact {
     pub(crate) name: &'static str,
     pub(crate) value: String,
@@ -14,30 +14,30 @@ pub(crate) fn fact(name: &'static str, value: impl Into<String>) -> Fact {
     Fact { name, value: value.into() }
 }
 
-/// Methods and their scores on records or peaks that they did not see.
+/// Table of methods and their scores on held-out records or peaks.
 pub(crate) struct ScoreTable {
     /// Titles of the columns, that of the methods first.
     pub(crate) columns: Vec<&'static str>,
     pub(crate) rows: Vec<ScoreRow>,
 }
 
-/// One method as it stands in such a table.
+/// One method in such a table.
 pub(crate) struct ScoreRow {
     pub(crate) title: String,
-    /// Whether the row stands out: a learner, or what the others are compared with.
+    /// `true` if the row is highlighted: a learner, or the reference of the comparison.
     pub(crate) is_marked: bool,
-    /// One cell for each column but the first; none where there is a reason instead.
+    /// One cell for each column but the first; empty if there is a reason instead.
     pub(crate) cells: Vec<String>,
-    /// Why there are no scores; empty where there are.
+    /// Reason for missing scores; empty if there are scores.
     pub(crate) reason: String,
 }
 
-/// A name as an anchor may have it.
+/// Returns a name in a form that is allowed in an anchor.
 pub(crate) fn anchor(name: &str) -> String {
     name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
 }
 
-/// One quantity as the oracle and as the estimator have it; `None` where it is not stated.
+/// One quantity by the oracle and by the estimator; `None` if it is not stated.
 pub(crate) struct ComparisonRow {
     pub(crate) quantity: &'static str,
     pub(crate) oracle: Option<String>,
@@ -68,8 +68,8 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
             oracle: Some(interval(oracle.interval_95)),
             estimate: estimate.interval_95.map(interval),
         },
-        // Two methods on one envelope can agree far beyond its standard error; only more digits
-        // than that warrants show by how much.
+        // Two methods on one envelope can agree far beyond its standard error; their difference shows only
+        // with more digits than that error justifies.
         ComparisonRow {
             quantity: "ζ to eight digits, whatever its standard error",
             oracle: Some(significant(oracle.zeta, 8)),
@@ -93,7 +93,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
     ]
 }
 
-/// The envelope that every method was given.
+/// Returns facts about the envelope that every method was fitted to.
 pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
     let envelope = &result.envelope;
     vec![
@@ -107,7 +107,7 @@ pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
     ]
 }
 
-/// How the estimate came about.
+/// Returns facts about the training of the estimate.
 pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
     let error = format!(
         "{} (stated tolerance {})",
@@ -125,7 +125,7 @@ pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
     ]
 }
 
-/// What the oracle's arithmetic and its residuals are worth.
+/// Returns facts about the quality of the oracle's arithmetic and residuals.
 pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
     let oracle = &result.oracle;
     vec![
@@ -135,12 +135,12 @@ pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
     ]
 }
 
-/// The truth of a simulated record, and how far the answer is from it.
+/// Returns facts about the truth of a simulated record, and the distance of the answer from it.
 pub(crate) fn truth(known: &TruthComparison) -> Vec<Fact> {
     crate::remarks::truth_rows(known).into_iter().map(|(name, value)| fact(name, value)).collect()
 }
 
-/// Where the record came from.
+/// Returns facts about the source of the record.
 pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
     let rate = with_uncertainty(data.sample_rate_hz, data.sample_rate_std_error_hz);
     let mut facts = vec![
@@ -162,7 +162,7 @@ pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
     facts
 }
 
-/// One seed's fit, as it stands in its table.
+/// The fit of one seed in its table.
 pub(crate) struct SeedView {
     pub(crate) seed: String,
     pub(crate) decay_rate: String,
@@ -174,12 +174,12 @@ pub(crate) struct SeedView {
     pub(crate) is_worst: bool,
 }
 
-/// The rows of the table of seeds, the worst marked; none where there is only one seed.
+/// Returns the rows of the table of seeds, with the worst marked; empty if there is only one seed.
 pub(crate) fn seeds(rows: &[SeedRow]) -> Vec<SeedView> {
     if rows.len() < 2 {
         return Vec::new();
     }
-    // An error that is not a number is worse than any.
+    // NaN counts as worse than any error.
     let badness = |row: &SeedRow| {
         if row.error_percent.is_nan() { f64::INFINITY } else { row.error_percent }
     };
@@ -203,17 +203,17 @@ pub(crate) fn seeds(rows: &[SeedRow]) -> Vec<SeedView> {
         .collect()
 }
 
-/// The same record through one pipeline and one clock, as it stands in its table.
+/// The result for one pipeline and one clock in its table.
 pub(crate) struct PipelineView<'a> {
     pub(crate) pipeline: &'a str,
     pub(crate) clock: &'a str,
     pub(crate) is_in_force: bool,
     pub(crate) fit: Option<FitView>,
-    /// Why there is no fit.
+    /// Reason for a missing fit.
     pub(crate) reason: &'a str,
 }
 
-/// What a pipeline gave.
+/// Fit of a pipeline.
 pub(crate) struct FitView {
     pub(crate) peaks: String,
     pub(crate) omega: String,

@@ -1,24 +1,26 @@
-//! The texts of a run that a page is made from.
+//! Texts of a run from which a page is made.
 
 /// The texts of the files in a run folder.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RunTexts<'a> {
-    /// Name of the run, as its folder is called.
+    /// Name of the run: the name of its folder.
     pub name: &'a str,
-    /// `config.toml`: the resolved settings; of a diagnosis `repaired.toml`. Shown as it is; may be empty.
+    /// `config.toml`: the resolved settings; for a diagnosis, `repaired.toml`. Shown unchanged; may be empty.
     pub config: &'a str,
-    /// `result.json`: see [`results::EstimationResult`], [`results::ComparisonResult`] and
-    /// [`results::PredictionResult`]; of a diagnosis `diagnosis.json`: [`results::DiagnosisResult`].
+    /// `result.json`: see [`results::EstimationResult`], or the type for the run's task in [`results`]; for a
+    /// diagnosis, `diagnosis.json`: [`results::DiagnosisResult`].
     pub result: &'a str,
-    /// `trace.csv`: see [`results::TraceRow`]. Empty for a method that takes no steps, and
-    /// for a comparison.
+    /// `trace.csv`: see [`results::TraceRow`], and [`results::LearnTraceRow`] for a learning study. Empty for
+    /// a method that takes no steps, and for other tasks.
     pub trace: &'a str,
-    /// `envelope.csv`: see [`results::EnvelopeRow`]. Empty for a study of prediction.
+    /// `envelope.csv`: see [`results::EnvelopeRow`]. Empty except for an estimation and a comparison.
     pub envelope: &'a str,
-    /// `predictions.csv`: see [`results::PredictionCsvRow`]. Empty but for a study of prediction.
+    /// `predictions.csv`: see [`results::PredictionCsvRow`], and [`results::LearnSeriesRow`] for a learning
+    /// study. Empty for other tasks.
     pub predictions: &'a str,
-    /// `series.csv`: see [`results::SeriesRow`]. Empty but for a diagnosis.
+    /// `series.csv`: see [`results::SeriesRow`], and [`results::LearnTorqueRow`] for a learning study. Empty
+    /// except for these and a diagnosis.
     pub series: &'a str,
-    /// `environment.json`: what the run was made with. Shown as it is; may be empty.
+    /// `environment.json`: the program and the machine of the run. Shown unchanged; may be empty.
     pub environment: &'a str,
 }

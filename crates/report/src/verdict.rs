@@ -1,10 +1,10 @@
-//! What a run came to, in one sentence, and what kind of record it is about.
+//! Verdict of a run in one sentence, and the kind of its record.
 
 use results::{EstimationResult, Reached};
 
 use crate::format;
 
-/// How the page colors a statement. The words carry the meaning; the color repeats it.
+/// Color of a statement. The words carry the meaning; the color repeats it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tone {
     Good,
@@ -13,7 +13,7 @@ pub(crate) enum Tone {
 }
 
 impl Tone {
-    /// The class in the style sheet.
+    /// Returns the class in the style sheet.
     pub(crate) fn class(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -23,11 +23,11 @@ impl Tone {
     }
 }
 
-/// What the run came to.
+/// Verdict of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Verdict {
     pub(crate) tone: Tone,
-    /// Two or three words.
+    /// Label of two or three words.
     pub(crate) label: &'static str,
     pub(crate) sentence: String,
 }
@@ -79,7 +79,7 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     }
 }
 
-/// Steps that follow an estimation, by how it ended.
+/// Returns the next steps after an estimation, by the state in which it ended.
 pub(crate) fn next(result: &EstimationResult) -> Vec<String> {
     let path = &result.data.path;
     let mut steps = match result.estimate.reached {
@@ -106,7 +106,7 @@ pub(crate) fn next(result: &EstimationResult) -> Vec<String> {
     steps
 }
 
-/// What follows "it": how far from the oracle, and whether that is within what was stated.
+/// Returns the words after "it": the distance from the oracle, and its relation to the stated tolerance.
 fn comparison(result: &EstimationResult) -> String {
     const ORACLE: &str = "closed-form least squares";
     let tolerance = format::quantity(&format::exact(result.tolerance_percent), "%");
@@ -137,8 +137,8 @@ fn comparison(result: &EstimationResult) -> String {
     }
 }
 
-/// A title as it stands inside a sentence: its first letter small, unless its first word is a name or
-/// holds another capital.
+/// Returns a title as inside a sentence: its first letter in lower case, unless its first word is a name or
+/// contains another capital.
 #[must_use]
 pub fn in_a_sentence(title: &str) -> String {
     const NAMES: [&str; 6] = ["Bayesian", "Coulomb", "Gaussian", "Levenberg", "Newton", "Stribeck"];
@@ -157,19 +157,19 @@ pub fn in_a_sentence(title: &str) -> String {
     }
 }
 
-/// Whether the record was measured.
+/// Origin of a record: measured, simulated or not stated.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Origin {
-    /// The class in the style sheet.
+    /// Class in the style sheet.
     pub(crate) class: &'static str,
-    /// In two or three words.
+    /// Label of two or three words.
     pub(crate) label: &'static str,
-    /// What that means for the numbers.
+    /// Meaning of the origin for the numbers.
     pub(crate) note: &'static str,
 }
 
-/// That of several records where all share it. Where they differ it is said to, with `apart` on where each one's stands; where
-/// the page has no place for these, it is as good as unstated.
+/// Returns the common origin of several records. If the origins differ and `apart` is given, the result says
+/// so, with `apart` as its note; without `apart`, the origin then counts as unstated.
 pub(crate) fn origin_of_all(
     stated: impl Iterator<Item = results::Origin>,
     apart: Option<&'static str>,
@@ -182,7 +182,7 @@ pub(crate) fn origin_of_all(
     }
 }
 
-/// In which words a record is named: simulated and measured are always told apart.
+/// Returns the words for the origin of a record; they always distinguish simulated from measured records.
 pub(crate) fn kind(stated: results::Origin) -> &'static str {
     match stated {
         results::Origin::Unstated => "origin not stated",

@@ -1,4 +1,4 @@
-//! A batch of diagnoses.
+//! Results of a batch of diagnoses.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -7,14 +7,16 @@ use std::collections::BTreeMap;
 /// The `schema` field of a case file.
 pub const CASE_SCHEMA: &str = "ringdown.case/1";
 
-/// The content of `case.json` beside an answer of a batch: what was asked, and what the case is called by.
+/// The content of `case.json` beside a diagnosis of a batch: the inputs of the diagnosis and the labels of
+/// the case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseFile {
     /// Always [`CASE_SCHEMA`].
     pub schema: String,
-    /// All that the answer depends on: digests of records and simulator, options, version of the program.
+    /// Everything that the diagnosis depends on: digests of the records and the simulator, options, program
+    /// version.
     pub asked: Value,
-    /// Labels that the case gives itself, such as `robot`, `joint` and `date`.
+    /// Labels that the case file declares, such as `robot`, `joint` and `date`.
     pub labels: BTreeMap<String, String>,
 }
 
@@ -23,27 +25,27 @@ pub struct CaseFile {
 pub struct BatchResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"diagnose-batch"`.
+    /// Task of the run: `"diagnose-batch"`.
     pub task: String,
-    /// Cases found; of a share, those in it.
+    /// Number of cases found; in a run of one share, the cases of that share.
     pub cases: usize,
-    /// Cases diagnosed now.
+    /// Number of cases diagnosed by this run.
     pub diagnosed: usize,
-    /// Cases whose answer was there already and was left alone, or was given by another process meanwhile.
+    /// Number of cases skipped because a diagnosis was already there or another process wrote it meanwhile.
     pub skipped: usize,
-    /// Cases that gave no answer.
+    /// Cases without a diagnosis.
     pub failed: Vec<FailedCase>,
-    /// True if every case was looked at: an interrupted batch leaves some.
+    /// `true` if every case was processed; an interrupted batch leaves some out.
     pub complete: bool,
     /// Wall time in seconds.
     pub seconds: f64,
 }
 
-/// A case that gave no answer.
+/// A case without a diagnosis.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FailedCase {
-    /// Name of its folder.
+    /// Name of the case's folder.
     pub id: String,
-    /// Why: the message of its own diagnosis.
+    /// Error message of the case's diagnosis.
     pub message: String,
 }

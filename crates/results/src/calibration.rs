@@ -1,10 +1,10 @@
-//! What a calibration moves: the nominal simulator's numbers before and after.
+//! Coefficients of the nominal simulator before and after recalibration.
 
 use super::interval::WithInterval;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The nominal coefficients before and after.
+/// The nominal coefficients before and after recalibration and repair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Moment of inertia, or mass.
@@ -13,16 +13,16 @@ pub struct Calibration {
     pub damping: CalibratedRow,
     /// Stiffness.
     pub stiffness: CalibratedRow,
-    /// Where the spring is relaxed.
+    /// Rest angle: position at which the spring is relaxed.
     pub rest_angle: CalibratedRow,
-    /// The effects that the nominal simulator has; absent where it has none.
+    /// Effects of the nominal simulator; absent if it has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<KnownEffectRow>,
 }
 
 impl Calibration {
-    /// The coefficients of the oscillator by name, then the parameters of the effects that the nominal simulator has,
-    /// as `gravity.torque`.
+    /// Returns the oscillator's coefficients by name, then the parameters of the nominal simulator's effects
+    /// under names such as `gravity.torque`.
     #[must_use]
     pub fn rows(&self) -> Vec<(String, &CalibratedRow)> {
         let plain = [
@@ -38,29 +38,29 @@ impl Calibration {
     }
 }
 
-/// An effect that the nominal simulator has, before and after.
+/// An effect of the nominal simulator with its parameters before and after recalibration and repair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KnownEffectRow {
-    /// Its id.
+    /// Id of the effect.
     pub id: String,
-    /// True if recalibration may move its parameters; otherwise they are held.
+    /// `true` if recalibration may change the effect's parameters; otherwise they are held fixed.
     pub recalibrate: bool,
-    /// Its parameters by name.
+    /// Parameters of the effect by name.
     pub parameters: BTreeMap<String, CalibratedRow>,
 }
 
-/// A nominal coefficient before and after.
+/// A coefficient of the nominal simulator before and after recalibration and repair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibratedRow {
     /// Value in the nominal simulator.
     pub nominal: f64,
-    /// Symbol of its unit.
+    /// Symbol of the coefficient's unit.
     pub unit: String,
-    /// Recalibrated without effects; `null` where these data cannot tell it.
+    /// Value after recalibration without effects; `null` if these data cannot determine it.
     pub recalibrated: Option<WithInterval>,
-    /// With the named effects; `null` where these data cannot tell it.
+    /// Value after the repair with the named effects; `null` if these data cannot determine it.
     pub repaired: Option<WithInterval>,
-    /// True if these data determine what stands under `repaired`; absent where that is `null`.
+    /// `true` if these data determine `repaired`; absent if `repaired` is `null`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub determined: Option<bool>,
 }

@@ -1,4 +1,4 @@
-//! A comparison of many methods on one envelope.
+//! Results of a comparison of many methods on one envelope.
 
 use super::estimation::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, TruthComparison};
 use super::failure::Failure;
@@ -11,53 +11,54 @@ use serde::{Deserialize, Serialize};
 pub struct ComparisonResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"compare"`.
+    /// Task of the run: `"compare"`.
     pub task: String,
     /// The first seed.
     pub seed: u64,
-    /// Number of seeds that methods which draw random numbers were fitted with.
+    /// Number of seeds that were used to fit each method that draws random numbers.
     pub seeds: u64,
-    /// Where the record came from and what its file was found to be.
+    /// Source of the record and findings from reading its file.
     pub data: DataSummary,
-    /// The envelope that every method was given.
+    /// Envelope that every method was fitted to.
     pub envelope: EnvelopeSummary,
     /// Certified least squares on that envelope.
     pub oracle: OracleSummary,
-    /// Physical quantities that follow from the reference's numbers.
+    /// Physical quantities derived from the reference's estimates.
     pub derived: Derived,
     /// One row for each method, in the paper's order.
     pub results: Vec<MethodRow>,
-    /// The same line by libraries that are not of this project: a second opinion on the reference.
+    /// Fits of the same line by third-party libraries: a second opinion on the reference.
     #[serde(default)]
     pub libraries: Vec<MethodRow>,
-    /// The largest error over methods and seeds, in percent.
+    /// Largest error over methods and seeds, in percent.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub max_error_percent: f64,
-    /// The largest error that passes, in percent.
+    /// Largest error that passes, in percent.
     pub tolerance_percent: f64,
-    /// True if every method gave an estimate within the tolerance.
+    /// `true` if every method gave an estimate within the tolerance.
     pub pass: bool,
     /// Wall time of all fits together, in seconds.
     pub seconds: f64,
-    /// The same record through each pipeline and clock, by certified least squares.
+    /// Certified least-squares results on the same record for each pipeline and clock.
     pub pipelines: Vec<PipelineRow>,
-    /// Where those differ by more than their errors: which, by how much, and which to believe.
+    /// Disagreement beyond the standard errors between these results: its size and the result to trust;
+    /// absent if they agree.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disagreement: Option<String>,
-    /// Least squares beside the truth, where that is known.
+    /// Least-squares result beside the truth, if the truth is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthComparison>,
-    /// Statements commonly read off such a table that do not follow from it.
+    /// Statements often drawn from such a table that do not follow from it.
     pub cautions: Vec<Caution>,
 }
 
 impl ComparisonResult {
-    /// The methods whose value is held against least squares.
+    /// Returns the methods whose value is compared with least squares.
     pub fn held_to_least_squares(&self) -> impl Iterator<Item = &MethodRow> {
         self.results.iter().filter(|row| row.is_held_to_least_squares())
     }
 
-    /// The methods that estimate something else, for which a distance from least squares is no error.
+    /// Returns the methods that estimate another quantity, so that a distance from least squares is no error.
     pub fn of_their_own(&self) -> impl Iterator<Item = &MethodRow> {
         self.results.iter().filter(|row| !row.is_held_to_least_squares())
     }
@@ -70,9 +71,10 @@ pub struct Derived {
     pub period_s: f64,
     /// Frequency, in hertz.
     pub frequency_hz: f64,
-    /// Moment of inertia I as configured, in kg·m²; 1 where none is.
+    /// Moment of inertia I as configured, in kg·m²; 1 if none is configured.
     pub inertia_kg_m2: f64,
-    /// True if no inertia is configured: stiffness and damping are then per unit of inertia, in 1/s² and 1/s.
+    /// `true` if no inertia is configured; stiffness and damping are then per unit of inertia, in 1/s² and
+    /// 1/s.
     #[serde(default)]
     pub per_unit_of_inertia: bool,
     /// Stiffness k = I·ω², in N·m/rad.
@@ -83,7 +85,7 @@ pub struct Derived {
     pub critical_damping_n_m_s_per_rad: f64,
     /// Quality factor Q = 1/(2ζ).
     pub quality_factor: f64,
-    /// Cycles in which the amplitude falls to 1/e: ω/(2π·λ) = Q/π.
+    /// Number of cycles in which the amplitude falls to 1/e: ω/(2π·λ) = Q/π.
     pub cycles_to_one_over_e: f64,
     /// Half-life of the amplitude, ln 2/λ, in seconds.
     pub half_life_s: f64,
@@ -91,40 +93,41 @@ pub struct Derived {
     pub time_constant_s: f64,
 }
 
-/// One method's row.
+/// Result of one method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodRow {
-    /// Number in the paper's tables.
+    /// Number of the method in the paper's tables; `None` if the paper does not have it.
     pub number: Option<u8>,
-    /// Identifier.
+    /// Identifier of the method.
     pub id: String,
-    /// Name in words.
+    /// Name of the method in words.
     pub title: String,
-    /// Where it comes from.
+    /// Origin of the method.
     pub family: Family,
-    /// Relation of its converged value to least squares.
+    /// Relation of the method's converged value to least squares.
     #[serde(default)]
     pub estimand: Estimand,
-    /// Estimate, or the reason why there is none.
+    /// Estimate, or the reason for a missing one.
     pub outcome: MethodOutcome,
 }
 
 impl MethodRow {
-    /// Whether its value is held against least squares; where it estimates something else, a distance from it is no error.
+    /// Returns `true` if the method's value is compared with least squares. If the method estimates another
+    /// quantity, a distance from least squares is no error.
     #[must_use]
     pub fn is_held_to_least_squares(&self) -> bool {
         self.estimand != Estimand::Own
     }
 }
 
-/// A method's first seed fitted without a part of it.
+/// Fit of a method's first seed with a part of the method removed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AblationRow {
-    /// The part that was taken away.
+    /// The removed part.
     pub ablation: Ablation,
-    /// |ζ − ζ_oracle| / ζ_oracle · 100 of that fit; `None` where it gave no estimate.
+    /// |ζ − ζ_oracle| / |ζ_oracle| · 100 of that fit; `None` if it gave no estimate.
     pub error_percent: Option<f64>,
-    /// Why it gave none.
+    /// Reason for a missing estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
 }
@@ -133,29 +136,29 @@ pub struct AblationRow {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MethodOutcome {
-    /// Estimates, the first seed's where there are several.
+    /// Estimate of the method; with several seeds, that of the first.
     Estimate(MethodEstimate),
     /// No estimate.
     Failed {
-        /// Why.
+        /// Reason for the failure.
         reason: Failure,
     },
 }
 
 impl MethodOutcome {
-    /// Whether its turn had not come when the run was interrupted.
+    /// Returns `true` if the run was interrupted before this method began.
     #[must_use]
     pub fn is_not_begun(&self) -> bool {
         matches!(self, Self::Failed { reason: Failure::NotBegun })
     }
 
-    /// Whether the run was interrupted before this method had finished.
+    /// Returns `true` if the run was interrupted before this method finished.
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
         self.is_not_begun() || self.estimate().is_some_and(|own| own.reached == Reached::Interrupted)
     }
 
-    /// The estimate, where there is one.
+    /// Returns the estimate, if there is one.
     #[must_use]
     pub fn estimate(&self) -> Option<&MethodEstimate> {
         match self {
@@ -164,7 +167,7 @@ impl MethodOutcome {
         }
     }
 
-    /// Whether there is an estimate that passes.
+    /// Returns `true` if there is an estimate and it passes.
     #[must_use]
     pub fn passes(&self) -> bool {
         self.estimate().is_some_and(|estimate| estimate.pass)
@@ -174,26 +177,26 @@ impl MethodOutcome {
 /// A method's estimate over its seeds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodEstimate {
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: f64,
-    /// λ/ω.
+    /// Damping ratio ζ, defined as in [`OracleSummary::zeta`].
     pub zeta: f64,
-    /// Standard error of ζ, where the method states one.
+    /// Standard error of ζ, if the method states one.
     pub zeta_std_error: Option<f64>,
-    /// |ζ − ζ_oracle| / ζ_oracle · 100 of the first seed.
+    /// |ζ − ζ_oracle| / |ζ_oracle| · 100 of the first seed.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
-    /// Its median over the seeds.
+    /// Median of that error over the seeds.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub median_error_percent: f64,
-    /// Its largest over the seeds.
+    /// Largest of that error over the seeds.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub worst_error_percent: f64,
-    /// Significant digits in which the worst seed agrees with the oracle; 15.7 at most.
+    /// Significant digits in which the worst seed agrees with the oracle; at most 15.7.
     pub digits_of_agreement: f64,
-    /// Number of seeds fitted: 1 for a method that draws nothing.
+    /// Number of seeds fitted; 1 for a method that draws no random numbers.
     pub seeds: u64,
-    /// Steps of the first seed.
+    /// Number of training steps of the first seed's fit.
     pub steps: u64,
     /// Number of trained parameters.
     pub parameters: usize,
@@ -201,22 +204,22 @@ pub struct MethodEstimate {
     pub seconds: f64,
     /// State in which the first seed's fit ended.
     pub reached: Reached,
-    /// Reason, in a sentence, why the first seed's fit stopped.
+    /// Reason why the first seed's fit stopped, as a sentence.
     pub stopped_because: String,
-    /// True if every seed is within the tolerance; one that estimates something else than least squares passes
-    /// where it gives a finite value.
+    /// `true` if every seed is within the tolerance; a method that estimates another quantity than least
+    /// squares passes if its value is finite.
     pub pass: bool,
-    /// The same fit with the learned part at zero, and with noise for its input; empty for a method without a
-    /// learned part.
+    /// The first seed's fit with the learned part held at zero, and with noise as the input; empty for a
+    /// method without a learned part.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ablations: Vec<AblationRow>,
 }
 
-/// A statement that the numbers do not bear out.
+/// A common statement that the numbers do not support.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Caution {
     /// The statement, as it is commonly made.
     pub statement: String,
-    /// Finding that the numbers support: a sentence.
+    /// Conclusion that the numbers support, as a sentence.
     pub finding: String,
 }

@@ -1,4 +1,4 @@
-//! What an estimation found, and the parts that several answers share.
+//! Results of an estimation, and the parts that several results share.
 
 use super::method::Reached;
 use crate::interval::null_is_not_a_number;
@@ -13,108 +13,109 @@ pub const RESULT_SCHEMA: &str = "ringdown.result/1";
 pub struct EstimationResult {
     /// Always [`RESULT_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"estimate"`.
+    /// Task of the run: `"estimate"`.
     pub task: String,
     /// Identifier of the estimator, such as `"pinn"`.
     pub estimator: String,
-    /// Its name in words.
+    /// Name of the estimator in words.
     pub estimator_title: String,
-    /// The seed of the fit that `estimate` holds.
+    /// Seed of the fit in `estimate`.
     pub seed: u64,
-    /// Where the record came from and what its file was found to be.
+    /// Source of the record and findings from reading its file.
     pub data: DataSummary,
-    /// The envelope that every method was given.
+    /// Envelope that every method was fitted to.
     pub envelope: EnvelopeSummary,
     /// Closed-form least squares on that envelope.
     pub oracle: OracleSummary,
     /// Estimate of the method on that envelope.
     pub estimate: EstimateSummary,
-    /// |ζ − ζ_oracle| / ζ_oracle · 100; not finite, in JSON `null`, where the oracle's ζ is zero.
+    /// |ζ − ζ_oracle| / |ζ_oracle| · 100; not finite, in JSON `null`, if the oracle's ζ is zero.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
-    /// The largest `error_percent` that passes.
+    /// Largest `error_percent` that passes.
     pub tolerance_percent: f64,
-    /// True if every seed's error is within the tolerance.
+    /// `true` if every seed's error is within the tolerance.
     pub pass: bool,
     /// Wall time of the fit, in seconds.
     pub seconds: f64,
-    /// Training steps taken.
+    /// Number of training steps taken.
     pub steps: u64,
     /// Number of trained parameters.
     pub parameters: usize,
-    /// One row for each seed that was fitted, `seed` first.
+    /// One row for each fitted seed; the row of `seed` comes first.
     pub seeds: Vec<SeedRow>,
-    /// The largest `error_percent` over `seeds`.
+    /// Largest `error_percent` over `seeds`.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub worst_error_percent: f64,
-    /// The same record through each pipeline and clock, by closed-form least squares.
+    /// Closed-form least-squares results on the same record for each pipeline and clock.
     pub pipelines: Vec<PipelineRow>,
-    /// Where those differ by more than their errors: which, by how much, and which to believe.
+    /// Disagreement beyond the standard errors between these results: its size and the result to trust;
+    /// absent if they agree.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disagreement: Option<String>,
-    /// The answer beside the truth, where that is known.
+    /// Estimate beside the truth, if the truth is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthComparison>,
 }
 
-/// An answer beside the truth of a simulated record.
+/// An estimate beside the truth of a simulated record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TruthComparison {
-    /// The file that states the truth.
+    /// Path of the file that states the truth.
     pub file: String,
     /// Meaning of the true numbers, in a sentence.
     pub meaning: String,
     /// True undamped angular frequency, in rad/s.
     pub omega_rad_s: Option<f64>,
-    /// Distance of the envelope's frequency from it, in percent, with its sign.
+    /// Difference of the envelope's frequency from the true one, in percent, signed.
     pub omega_off_percent: Option<f64>,
     /// True damping ratio.
     pub zeta: Option<f64>,
-    /// Distance of the estimate from it, in percent, with its sign.
+    /// Difference of the estimated damping ratio from the true one, in percent, signed.
     pub zeta_off_percent: Option<f64>,
-    /// The same in standard errors of the estimate.
+    /// That difference in standard errors of the estimate.
     pub zeta_off_std_errors: Option<f64>,
 }
 
-/// Where the record came from and what its file was found to be.
+/// Source of a record and findings from reading its file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DataSummary {
-    /// The path as configured.
+    /// Path as configured.
     pub path: String,
     /// SHA-256 of the file's bytes, hexadecimal, prefixed `sha256:`.
     pub digest: String,
-    /// Where its numbers came from.
+    /// Origin of the record's numbers.
     pub origin: Origin,
-    /// Samples in the file.
+    /// Number of samples in the file.
     pub samples: usize,
-    /// The clock in force: `"host"`, `"uniform-index"` or `"index-with-gaps"`.
+    /// Clock in force: `"host"`, `"uniform-index"` or `"index-with-gaps"`.
     pub clock: String,
-    /// Why that clock is in force, in a sentence.
+    /// Reason for the clock in force, as a sentence.
     pub clock_reason: String,
-    /// The clock that the stamps and the values speak for, whatever is in force.
+    /// Believed clock: the one that stamps and values support, whether or not it is in force.
     pub believed_clock: String,
-    /// Why that one is believed, in a sentence.
+    /// Reason for the choice of that clock, as a sentence.
     pub believed_clock_reason: String,
-    /// The sample period by a regression of time on the sample index, in seconds.
+    /// Sample period from a regression of time on the sample index, in seconds.
     pub sample_period_s: f64,
-    /// The rate of the sensor by a regression of time on the sample index, in hertz.
+    /// Sampling rate of the sensor from a regression of time on the sample index, in hertz.
     pub sample_rate_hz: f64,
-    /// Its standard error, in hertz.
+    /// Standard error of the sampling rate, in hertz.
     pub sample_rate_std_error_hz: f64,
-    /// The step of the sensor's lattice in SI units, where one was found.
+    /// Step of the sensor's lattice in SI units; `None` if no lattice was found.
     pub resolution: Option<f64>,
     /// Unit of the observed quantity: `"rad"`, `"m"`, `"rad/s"`, …
     pub unit: String,
-    /// Remarks about the file: sentences for the reader.
+    /// Remarks about the file, as sentences for the reader.
     pub findings: Vec<String>,
-    /// Decisions made in reading the file; empty in results of earlier versions.
+    /// Decisions made when the file was read; empty in results of older versions.
     #[serde(default)]
     pub reading: record::Reading,
 }
 
 impl DataSummary {
-    /// The summary of a record file under the clock in force and the one that is believed. What `stated` leaves open, the
-    /// file answers.
+    /// Creates the summary of a record file under the clock in force (`clock`) and the believed clock
+    /// (`believed`). The file's own statements fill in what `stated` leaves open.
     #[must_use]
     pub fn new(
         record: &Record,
@@ -146,110 +147,111 @@ impl DataSummary {
     }
 }
 
-/// The envelope that every method was given.
+/// Envelope that every method was fitted to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnvelopeSummary {
     /// `"paper"` or `"recommended"`.
     pub pipeline: String,
     /// Number of peaks.
     pub peaks: usize,
-    /// Samples after interpolation (equal to `data.samples` where nothing is interpolated).
+    /// Number of samples after interpolation; equal to `data.samples` if nothing is interpolated.
     pub samples: usize,
     /// Median period, in seconds.
     pub period_s: f64,
     /// 2π / `period_s`, in rad/s.
     pub omega_rad_s: f64,
-    /// The rest position that was removed, in the record's unit.
+    /// Rest position that was subtracted, in the record's unit.
     pub offset: f64,
-    /// Time of the first peak after the first sample, in seconds; the envelope's time starts there.
+    /// Time from the first sample to the first peak, in seconds; the envelope's time starts at the first
+    /// peak.
     pub first_peak_s: f64,
 }
 
 /// Closed-form least squares of ln A on t.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OracleSummary {
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: f64,
     /// ln A at the first peak.
     pub log_amplitude: f64,
     /// Coefficient of determination.
     pub r_squared: f64,
-    /// λ / ω.
+    /// Damping ratio ζ by the pipeline's definition: λ/ω (`"paper"`) or λ/√(λ² + ω²) (`"recommended"`).
     pub zeta: f64,
-    /// Standard error of λ under independent residuals, in 1/s; the sensor's noise, which weighs more as the amplitude falls,
-    /// is allowed for where the pipeline knows it.
+    /// Standard error of λ under independent residuals, in 1/s. It includes the sensor noise, which weighs
+    /// more as the amplitude falls, if the pipeline knows it.
     pub std_error: f64,
-    /// `std_error` over the standard error under residuals of one variance.
+    /// Ratio of `std_error` to the standard error under residuals of equal variance.
     #[serde(default = "one")]
     pub scatter_factor: f64,
     /// 95 % interval of λ under independent residuals, in 1/s.
     pub interval_95: [f64; 2],
-    /// Standard error of ζ, the frequency taken as known.
+    /// Standard error of ζ with the frequency taken as known.
     pub zeta_std_error: f64,
-    /// 95 % interval of ζ, the frequency taken as known.
+    /// 95 % interval of ζ with the frequency taken as known.
     pub zeta_interval_95: [f64; 2],
     /// Two-norm condition number of the column-scaled design matrix.
     pub condition: f64,
-    /// Significant decimal digits that the arithmetic promises.
+    /// Number of significant decimal digits that the arithmetic guarantees.
     pub promised_digits: f64,
-    /// Lag-one autocorrelation of the residuals: far from zero, the standard errors are too small.
+    /// Lag-one autocorrelation of the residuals. If it is far from zero, the standard errors are too small.
     pub residual_autocorrelation: f64,
 }
 
-/// Estimate of a method.
+/// Estimate of one method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimateSummary {
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: f64,
     /// ln A at the first peak.
     pub log_amplitude: f64,
-    /// λ / ω.
+    /// Damping ratio ζ, defined as in [`OracleSummary::zeta`].
     pub zeta: f64,
-    /// Standard error of λ, in 1/s, where the estimator states one: that under residuals of one variance, times
-    /// [`OracleSummary::scatter_factor`].
+    /// Standard error of λ, in 1/s, if the estimator states one: the standard error under residuals of equal
+    /// variance times [`OracleSummary::scatter_factor`].
     pub std_error: Option<f64>,
-    /// 95 % interval of λ, in 1/s, where the estimator states one.
+    /// 95 % interval of λ, in 1/s, if the estimator states one.
     pub interval_95: Option<[f64; 2]>,
-    /// Standard error of ζ, where the estimator states one.
+    /// Standard error of ζ, if the estimator states one.
     pub zeta_std_error: Option<f64>,
-    /// 95 % interval of ζ, where the estimator states one.
+    /// 95 % interval of ζ, if the estimator states one.
     pub zeta_interval_95: Option<[f64; 2]>,
     /// State in which the training ended.
     pub reached: Reached,
-    /// Reason, in a sentence, why the training stopped.
+    /// Reason why the training stopped, as a sentence.
     pub stopped_because: String,
 }
 
-/// One seed's fit.
+/// Fit with one seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeedRow {
     /// The seed.
     pub seed: u64,
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: f64,
-    /// λ / ω.
+    /// Damping ratio ζ, defined as in [`OracleSummary::zeta`].
     pub zeta: f64,
-    /// |ζ − ζ_oracle| / ζ_oracle · 100; not finite, in JSON `null`, where the oracle's ζ is zero.
+    /// |ζ − ζ_oracle| / |ζ_oracle| · 100; not finite, in JSON `null`, if the oracle's ζ is zero.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
     /// State in which this seed's fit ended, as in [`EstimateSummary::reached`].
     pub reached: Reached,
-    /// Training steps taken.
+    /// Number of training steps taken.
     pub steps: u64,
     /// Wall time, in seconds.
     pub seconds: f64,
 }
 
-/// The same record through one pipeline and one clock.
+/// Result on the same record for one pipeline and one clock.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PipelineRow {
     /// `"paper"` or `"recommended"`.
     pub pipeline: String,
     /// `"host"`, `"uniform-index"` or `"index-with-gaps"`.
     pub clock: String,
-    /// True if the fits of this run used this row's envelope.
+    /// `true` if the fits of this run used this row's envelope.
     pub in_force: bool,
-    /// Outcome, or the reason why there is none.
+    /// Outcome, or the reason for a missing one.
     pub outcome: PipelineOutcome,
 }
 
@@ -263,9 +265,9 @@ pub enum PipelineOutcome {
         peaks: usize,
         /// 2π / median period, in rad/s.
         omega_rad_s: f64,
-        /// λ, in 1/s.
+        /// Decay rate λ, in 1/s.
         decay_rate: f64,
-        /// λ / ω.
+        /// Damping ratio ζ, defined as in [`OracleSummary::zeta`].
         zeta: f64,
         /// Standard error of ζ under independent residuals.
         zeta_std_error: f64,
@@ -274,7 +276,7 @@ pub enum PipelineOutcome {
     },
     /// The pipeline does not apply to this record.
     Failed {
-        /// Why.
+        /// Reason for the failure.
         reason: String,
     },
 }
@@ -286,9 +288,9 @@ pub struct TraceRow {
     pub step: u64,
     /// Phase of the training, such as `"physics weight 100"`.
     pub phase: String,
-    /// The loss that the training minimizes, in the method's own scaled units.
+    /// Loss that the training minimizes, in the method's own scaled units.
     pub loss: f64,
-    /// λ at this step, in 1/s.
+    /// Decay rate λ at this step, in 1/s.
     pub decay_rate: f64,
 }
 
@@ -299,13 +301,13 @@ pub struct EnvelopeRow {
     pub time_s: f64,
     /// Natural logarithm of the peak's amplitude.
     pub log_amplitude: f64,
-    /// The oracle's line at this time.
+    /// Value of the oracle's line at this time.
     pub oracle: f64,
-    /// The estimator's fitted function at this time.
+    /// Value of the estimator's fitted function at this time.
     pub estimate: f64,
 }
 
-/// The factor of a result that was written before there was one.
+/// Default of [`OracleSummary::scatter_factor`] for results written before that field existed.
 fn one() -> f64 {
     1.0
 }

@@ -1,23 +1,23 @@
-//! Why a method has no outcome.
+//! Reason for a missing outcome of a method.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Why a method has no outcome; in a file it is the sentence that says so.
+/// Reason for a missing outcome of a method; serialized as a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Failure {
-    /// The run was interrupted before its turn came.
+    /// The run was interrupted before the method began.
     NotBegun,
-    /// It failed, in its own words.
+    /// The method failed with this message.
     Reason(String),
 }
 
-/// What a file says of a method whose turn had not come.
+/// Sentence for [`Failure::NotBegun`] in files.
 const NOT_BEGUN: &str = "interrupted before it began";
 
 impl Failure {
-    /// What an error says.
+    /// Returns the failure with the message of an error.
     #[must_use]
     pub fn of(error: &impl fmt::Display) -> Self {
         Self::Reason(error.to_string())

@@ -1,4 +1,4 @@
-//! A fleet: the answers of a batch side by side, the content of `fleet.json`.
+//! Results of a fleet: the diagnoses of a batch side by side, the content of `fleet.json`.
 
 use super::batch::FailedCase;
 use super::diagnosis::VerdictStatus;
@@ -14,100 +14,102 @@ pub const FLEET_SCHEMA: &str = "ringdown.fleet/1";
 pub struct FleetResult {
     /// Always [`FLEET_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"fleet"`.
+    /// Task of the run: `"fleet"`.
     pub task: String,
-    /// Names of the labels that some case has: `robot`, `joint` and `date` first.
+    /// Names of all labels used by any case; `robot`, `joint` and `date` come first.
     pub labels: Vec<String>,
-    /// Classes of effects, those that most cases have first.
+    /// Classes of effects, most frequent first.
     pub classes: Vec<FleetClass>,
-    /// The cases by each value of each label.
+    /// Cases grouped by each value of each label.
     pub groups: Vec<FleetGroup>,
-    /// Numbers that lie far from those of the other cases, the farthest first.
+    /// Numbers far from those of the other cases, the farthest first.
     pub outliers: Vec<FleetOutlier>,
-    /// Every case with an answer, by name.
+    /// Cases with a diagnosis, by name.
     pub cases: Vec<FleetCase>,
-    /// Cases without one, by name.
+    /// Cases without a diagnosis, by name.
     pub failed: Vec<FailedCase>,
 }
 
-/// A class of effects over all cases.
+/// Counts of one class of effects over all cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FleetClass {
-    /// Its id.
+    /// Id of the class.
     pub id: String,
-    /// Cases in which it is likelier there than not.
+    /// Number of cases in which the class has a probability of at least 0.5.
     pub likely: usize,
-    /// Of these, cases with a probability of 0.9 or more.
+    /// Number of cases in which the class has a probability of at least 0.9.
     pub certain: usize,
-    /// Median share of the gap over the cases in which it is likely; `null` where none states one.
+    /// Median share of the gap over the cases in which the class is likely; `null` if none of them states a
+    /// share.
     pub gap_share: Option<f64>,
 }
 
-/// The cases that share a label.
+/// Cases with the same value of a label.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FleetGroup {
     /// Name of the label.
     pub label: String,
-    /// Its value.
+    /// Value of the label.
     pub value: String,
-    /// Cases with it.
+    /// Number of cases with this value.
     pub cases: usize,
-    /// Of these, cases in which a class is likely, by class.
+    /// Number of these cases in which a class is likely, by class.
     pub likely: BTreeMap<String, usize>,
 }
 
-/// A number that lies far from those of the other cases.
+/// A number far from those of the other cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FleetOutlier {
-    /// The case.
+    /// Name of the case.
     pub case: String,
     /// Name of the number, such as `coulomb_friction.torque`.
     pub name: String,
-    /// Its unit; empty for a ratio.
+    /// Unit of the number; empty for a ratio.
     pub unit: String,
     /// The number.
     pub value: f64,
-    /// Median of the cases it is compared with: those of the same joint, where cases are labeled by joint.
+    /// Median of the reference cases: those of the same joint if cases are labeled by joint, else all.
     pub median: f64,
-    /// Number of these cases.
+    /// Number of reference cases.
     pub of: usize,
-    /// 0.6745 times the distance from the median over the median absolute deviation (Iglewicz and Hoaglin 1993).
+    /// 0.6745 times the distance from the median over the median absolute deviation (Iglewicz and Hoaglin
+    /// 1993).
     pub score: f64,
 }
 
-/// A case with an answer.
+/// A case with a diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FleetCase {
-    /// Name of its folder.
+    /// Name of the case's folder.
     pub id: String,
-    /// Labels that it gives itself.
+    /// Labels that the case file declares.
     pub labels: BTreeMap<String, String>,
-    /// Where its numbers came from; unstated too where its records differ.
+    /// Origin of the case's numbers; unstated if the origins of its records differ.
     pub origin: Origin,
-    /// Status of its verdict.
+    /// Status of the verdict.
     pub status: VerdictStatus,
-    /// Probabilities of classes by id.
+    /// Probabilities of the classes by id.
     pub classes: BTreeMap<String, f64>,
-    /// Its verdict in one sentence.
+    /// Verdict in one sentence.
     pub summary: String,
-    /// Its numbers by name.
+    /// Numbers of the case by name.
     pub numbers: BTreeMap<String, FleetNumber>,
 }
 
 /// A number of a case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FleetNumber {
-    /// The value, finite.
+    /// Finite value of the number.
     pub value: f64,
-    /// Its unit; empty for a ratio.
+    /// Unit of the number; empty for a ratio.
     pub unit: String,
 }
 
 impl FleetNumber {
-    /// Name of the held-out error after the repair over the noise.
+    /// Name of the ratio of the held-out error after the repair to the noise.
     pub const OVER_NOISE: &str = "error over noise";
-    /// Name of the share of the gap that the named effects close.
+    /// Name of the closure: the share of the gap that the named effects close.
     pub const CLOSURE: &str = "closure";
-    /// Name of the share of the gap without a name.
+    /// Name of the share of the gap that no named effect explains.
     pub const NAMELESS: &str = "share without a name";
 }

@@ -1,24 +1,25 @@
-//! Numbers with intervals, and numbers that JSON has none for.
+//! Numbers with intervals, and their deserialization when they are not finite.
 
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// A number with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WithInterval {
-    /// The estimate; not finite, in JSON `null`, where there is none.
+    /// The estimate; not finite, in JSON `null`, if there is none.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub value: f64,
-    /// Lower and upper end of the 95 % interval; an end that is not finite is `null`.
+    /// Lower and upper ends of the 95 % interval; an end that is not finite is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub interval_95: [f64; 2],
 }
 
-/// JSON has no word for infinite or no number; it writes `null`.
+/// Deserializes a number, reading `null` as NaN: JSON cannot express numbers that are not finite and writes
+/// `null`.
 pub(crate) fn null_is_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
-/// As [`null_is_not_a_number`], for two numbers.
+/// Deserializes two numbers like [`null_is_not_a_number`].
 pub(crate) fn nulls_are_not_numbers<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<[f64; 2], D::Error> {

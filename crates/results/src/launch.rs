@@ -1,40 +1,40 @@
-//! Work that was handed to a batch system.
+//! Results of handing work to a batch system.
 
 use serde::{Deserialize, Serialize};
 
 /// The `schema` field of a launch.
 pub const LAUNCH_SCHEMA: &str = "ringdown.launch/1";
 
-/// Shares that were handed to a batch system, or are ready for it.
+/// Shares of a run that were submitted to a batch system or are ready for submission.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LaunchResult {
     /// Always [`LAUNCH_SCHEMA`].
     pub schema: String,
-    /// The batch system: `"slurm"`.
+    /// Name of the batch system: `"slurm"`.
     pub launcher: String,
-    /// The folder that all shares write to.
+    /// Folder that all shares write to.
     pub folder: String,
-    /// The job script.
+    /// Path of the job script.
     pub script: String,
-    /// Runs or cases.
+    /// Number of runs or cases.
     pub parts: usize,
-    /// Shares, each of which is one task.
+    /// Number of shares; each is one task.
     pub shares: usize,
-    /// `false` where the script was only to be written.
+    /// `false` if the script was only written and not submitted.
     pub submitted: bool,
-    /// The job arrays, more than one where there are more shares than the cluster allows in one.
+    /// Job arrays; more than one if there are more shares than the cluster allows in one array.
     pub arrays: Vec<LaunchedArray>,
 }
 
 /// A job array.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LaunchedArray {
-    /// Number of the job; `null` before it is submitted.
+    /// Job number; `null` before the submission.
     pub job: Option<u64>,
-    /// Its tasks.
+    /// Number of tasks in the array.
     pub tasks: usize,
-    /// The share of its first task, from 1.
+    /// Share of the array's first task, from 1.
     pub first_share: usize,
-    /// The command that submits it.
+    /// Command that submits the array.
     pub command: String,
 }

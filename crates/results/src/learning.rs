@@ -1,4 +1,4 @@
-//! What `task = "learn"` leaves: learners and baselines on records they never saw.
+//! Results of `task = "learn"`: learners and baselines on records they never saw.
 
 use crate::method::Reached;
 use record::Origin;
@@ -10,16 +10,16 @@ use std::collections::BTreeMap;
 pub struct LearnResult {
     /// Always [`crate::RESULT_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"learn"`.
+    /// Task of the run: `"learn"`.
     pub task: String,
-    /// Root of every random draw.
+    /// Root seed of all random draws.
     pub seed: u64,
-    /// Records of all problems together, and how many of their stretches each part has.
+    /// Number of records in all problems together, and number of stretches in each part.
     pub data: LearnData,
-    /// The problems, in the order of the configuration.
+    /// Problems, in the order of the configuration.
     pub problems: Vec<LearnProblem>,
-    /// A row for each problem and method: problems in their order, within each the least error first, and ablations of
-    /// learners last.
+    /// One row for each problem and method: problems in their order, within a problem the smallest error
+    /// first and ablations of learners last.
     pub results: Vec<LearnRow>,
     /// Wall time of all fits, in seconds.
     pub seconds: f64,
@@ -28,13 +28,13 @@ pub struct LearnResult {
 /// Sizes of a data set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LearnData {
-    /// Records.
+    /// Number of records.
     pub records: usize,
-    /// Stretches that are learned from.
+    /// Number of stretches used for training.
     pub train: usize,
-    /// Stretches that choose among models.
+    /// Number of stretches used to choose among models.
     pub validation: usize,
-    /// Stretches that models are judged on.
+    /// Number of stretches used to score models.
     pub test: usize,
 }
 
@@ -45,36 +45,37 @@ pub struct LearnProblem {
     pub id: String,
     /// Title in words.
     pub title: String,
-    /// Where its numbers came from.
+    /// Origin of the data set's numbers.
     pub origin: Origin,
-    /// Why there is nothing else; `None` where there is.
+    /// Reason why the data set is missing and the remaining fields are empty; `None` if it is available.
     pub absent: Option<String>,
     /// Unit of the positions.
     pub unit: String,
-    /// Sizes.
+    /// Sizes of the data set.
     pub data: LearnData,
-    /// Samples that are learned from.
+    /// Number of samples used for training.
     pub training_samples: usize,
     /// Samples per second.
     pub rate_hz: f64,
     /// Typical period, in seconds.
     pub period_s: f64,
-    /// Past that a prediction starts from, in seconds.
+    /// Length of the past that a prediction starts from, in seconds.
     pub warm_up_s: f64,
-    /// Standard deviation of the sensor's noise.
+    /// Standard deviation of the sensor noise.
     pub noise: f64,
     /// Mean length of a test stretch after its warm-up, in seconds.
     pub test_s: f64,
-    /// What the input does between its samples, `"zero"` (kept) or `"linear"`; `None` without an input.
+    /// Course of the input between its samples: `"zero"` (held constant) or `"linear"`; `None` without an
+    /// input.
     #[serde(default)]
     pub input_hold: Option<String>,
-    /// Records with missing cells, and what was done about these.
+    /// Records with missing cells and the treatment of these cells, as sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<String>,
 }
 
 impl LearnProblem {
-    /// What the input does between its samples, in words; `None` without an input.
+    /// Returns the course of the input between its samples in words, or `None` without an input.
     #[must_use]
     pub fn input_between_samples(&self) -> Option<&'static str> {
         let hold = self.input_hold.as_deref()?;
@@ -82,7 +83,7 @@ impl LearnProblem {
     }
 }
 
-/// A method on a data set.
+/// Result of one method on one data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnRow {
     /// Name of the problem.
@@ -91,56 +92,59 @@ pub struct LearnRow {
     pub id: String,
     /// Name in words.
     pub title: String,
-    /// Part that it plays in the table.
+    /// Role of the method in the table.
     pub kind: LearnKind,
-    /// Scores on the test part; `None` where nothing was learned.
+    /// Scores on the test part; `None` if nothing was learned.
     pub test: Option<LearnTest>,
-    /// Error on the validation part, by which settings may be chosen; of a training that was stopped, the least so far.
+    /// Error on the validation part, by which settings may be chosen; for a training that was stopped, the
+    /// smallest so far.
     #[serde(default)]
     pub validation: Option<LearnValidation>,
-    /// Coefficients of the law by name, where the model is one.
+    /// Coefficients of the learned law by name; `None` if the model is not a law.
     pub coefficients: Option<BTreeMap<String, LearnCoefficient>>,
-    /// The law as text.
+    /// Learned law as text.
     pub equation: Option<String>,
-    /// Root mean square error of the learned torque over what the nominal simulator lacks, where the truth is known.
+    /// Root mean square error of the learned torque, relative to the torque that the nominal simulator lacks;
+    /// `None` if the truth is not known or the model has no torque.
     pub torque_error: Option<f64>,
-    /// Trained numbers.
+    /// Number of trained parameters.
     pub parameters: usize,
     /// Wall time of the training, in seconds.
     pub seconds: f64,
-    /// End of its training.
+    /// State in which the training ended.
     pub reached: LearnEnd,
-    /// Why nothing was learned.
+    /// Reason why nothing was learned.
     pub failure: Option<String>,
-    /// The model's file in the run's folder.
+    /// Name of the model's file in the run's folder.
     pub model: Option<String>,
 }
 
 /// Error of free runs over the validation part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LearnValidation {
-    /// Root mean square error, in the position's unit.
+    /// Root mean square error, in the unit of the position.
     pub free_run_rmse: f64,
-    /// The same over the sensor's noise.
+    /// That error over the sensor noise.
     pub over_noise: f64,
 }
 
-/// Part that a method plays in the table.
+/// Role of a method in the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LearnKind {
-    /// Learns from the records.
+    /// Method that learns from the records.
     Learner,
-    /// Knows nothing, or what a simulator knows.
+    /// Method that knows nothing, or only what a simulator knows.
     Baseline,
-    /// A learner's model without what it learned, or given noise: identifiers end in `:at-zero` and `:on-noise`.
+    /// A learner's model with the learned part removed or fed with noise; its identifier ends in `:at-zero`
+    /// or `:on-noise`.
     Ablation,
-    /// The true law, fitted: what nobody can do better.
+    /// The true law, fitted: no method can do better.
     Reference,
 }
 
 impl LearnKind {
-    /// The name as files and tables write it.
+    /// Returns the name used in files and tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -152,19 +156,19 @@ impl LearnKind {
     }
 }
 
-/// End of a training.
+/// State in which a training ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LearnEnd {
     /// Nothing was learned.
     Failed,
-    /// The state that the training reached.
+    /// State that the training reached.
     #[serde(untagged)]
     Trained(Reached),
 }
 
 impl LearnEnd {
-    /// The name as files and tables write it.
+    /// Returns the name used in files and tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -174,36 +178,36 @@ impl LearnEnd {
     }
 }
 
-/// Scores on records never seen. Errors that are not finite are `null`.
+/// Scores on records that were not used for training. Errors that are not finite are `null`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnTest {
     /// Root mean square error of the free run.
     pub free_run_rmse: Option<f64>,
-    /// Its unit.
+    /// Unit of the errors.
     pub unit: String,
-    /// The same over the sensor's noise.
+    /// Free-run error over the sensor noise.
     pub over_noise: Option<f64>,
-    /// Median time until the error passes three times the noise, in seconds.
+    /// Median time until the error exceeds three times the noise, in seconds.
     pub horizon_s: f64,
-    /// Root mean square error one sample ahead.
+    /// Root mean square error of predictions one sample ahead.
     pub one_step_rmse: Option<f64>,
-    /// Share of observations within the stated 95 % band.
+    /// Share of observations inside the stated 95 % band.
     pub coverage_95: Option<f64>,
 }
 
 /// A coefficient of a learned law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnCoefficient {
-    /// Its value.
+    /// Value of the coefficient.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the coefficient.
     pub unit: String,
-    /// 95 % interval, where one is stated.
+    /// 95 % interval, if one is stated.
     pub interval_95: Option<[f64; 2]>,
-    /// Share of an ensemble that has the term.
+    /// Share of the ensemble's members that have the term, if there is an ensemble.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inclusion: Option<f64>,
-    /// True value, where it is known.
+    /// True value, if it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<f64>,
 }
@@ -223,11 +227,11 @@ pub struct LearnSeriesRow {
     pub observed: f64,
     /// Predicted position.
     pub predicted: f64,
-    /// Stated standard deviation of the observation about it.
+    /// Stated standard deviation of the observation around the prediction.
     pub std: Option<f64>,
 }
 
-/// One row of `series.csv` of a learning study: a learned torque beside the true one at a visited state.
+/// One row of `series.csv` of a learning study: the learned and the true torque at a visited state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnTorqueRow {
     /// Name of the problem.
@@ -244,7 +248,7 @@ pub struct LearnTorqueRow {
     pub truth: f64,
     /// Learned acceleration.
     pub learned: f64,
-    /// Its stated standard deviation.
+    /// Stated standard deviation of the learned acceleration.
     pub std: Option<f64>,
 }
 
@@ -255,11 +259,11 @@ pub struct LearnTraceRow {
     pub problem: String,
     /// Identifier of the method.
     pub method: String,
-    /// Steps so far.
+    /// Number of training steps so far.
     pub step: u64,
-    /// Part of the training.
+    /// Phase of the training.
     pub phase: String,
-    /// Root mean square residual of the training part.
+    /// Root mean square residual on the training part.
     pub train: f64,
     /// Free-run error on the validation part.
     pub validation: Option<f64>,

@@ -1,8 +1,8 @@
-//! What an answer is: the schemas of `result.json`, `diagnosis.json` and of the tables beside them, as types.
+//! Types of all results: the schemas of `result.json`, `diagnosis.json` and the tables beside them.
 //!
-//! Every command's answer is written, read again, scored and shown by these types, so that a state is a variant and never a
-//! text to be compared. Field names are part of what the outside world may rely on; growing the schema is fine, renaming
-//! is not.
+//! Every command's result is written, read, scored and displayed through these types. A state is therefore an
+//! enum variant, never a text to be compared. Other programs may rely on the field names: adding fields is
+//! fine, renaming them is not.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -35,7 +35,7 @@ pub use diagnosis::{
     Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
     RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, VerdictStatus,
 };
-/// Where a record's numbers came from.
+/// Origin of a record's numbers.
 pub use record::Origin;
 
 pub use estimation::{

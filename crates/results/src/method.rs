@@ -1,4 +1,4 @@
-//! What a method is, and how its fit ended.
+//! Description of a method, and the state in which its fit ended.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,24 +6,24 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reached {
-    /// The method's own condition for a solution holds.
+    /// The method's own convergence condition holds.
     Converged,
-    /// The budget ended first.
+    /// The budget ran out before convergence.
     BudgetSpent,
-    /// The loss stopped being finite or grew without bound; the best state before is reported.
+    /// The loss became infinite or NaN, or grew without bound; the best state before that is reported.
     Diverged,
-    /// Somebody asked to stop; the best state so far is reported.
+    /// The user asked to stop; the best state so far is reported.
     Interrupted,
-    /// No step improves the fit, and the method's own condition does not hold either.
+    /// No step improves the fit, although the method's convergence condition does not hold.
     Stalled,
 }
 
 impl Reached {
-    /// Every state.
+    /// All states.
     pub const ALL: [Self; 5] =
         [Self::Converged, Self::BudgetSpent, Self::Diverged, Self::Interrupted, Self::Stalled];
 
-    /// The name as results write it.
+    /// Returns the name used in results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -35,7 +35,7 @@ impl Reached {
         }
     }
 
-    /// The state as a table says it.
+    /// Returns the state in words for tables.
     #[must_use]
     pub const fn in_words(self) -> &'static str {
         match self {
@@ -49,22 +49,23 @@ impl Reached {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Estimand {
-    /// It is that slope: a converged fit that differs from certified least squares is wrong.
+    /// The value is that slope; a converged fit that differs from certified least squares is wrong.
     #[default]
     LeastSquares,
-    /// It approximates that slope by a skill learned beforehand: it differs by the error of its training.
+    /// The value approximates that slope with a skill learned beforehand; it differs by the error of that
+    /// training.
     Approximation,
-    /// It is something else, and may differ from least squares.
+    /// The value is another quantity and may differ from least squares.
     Own,
-    /// It is nothing: the floor row.
+    /// The value estimates nothing: the floor row.
     Nothing,
 }
 
 impl Estimand {
-    /// Every relation.
+    /// All relations.
     pub const ALL: [Self; 4] = [Self::LeastSquares, Self::Approximation, Self::Own, Self::Nothing];
 
-    /// The name as files write it.
+    /// Returns the name used in files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -75,7 +76,7 @@ impl Estimand {
         }
     }
 
-    /// Whether a value of this relation can differ from least squares, in words.
+    /// Returns a short answer for tables: may a value of this relation differ from least squares?
     #[must_use]
     pub const fn may_differ(self) -> &'static str {
         match self {
@@ -87,22 +88,22 @@ impl Estimand {
     }
 }
 
-/// A part of an estimator that is taken away for a fit.
+/// A part of an estimator that is removed for a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ablation {
-    /// Every parameter of the learned part (network, process, expression) is held at zero; what stands beside it,
-    /// such as a straight line, is trained.
+    /// Every parameter of the learned part (network, process, expression) is held at zero; the rest, such as
+    /// a straight line, is trained.
     LearnedPartAtZero,
-    /// What the learned part reads is replaced by white noise of the same range; its targets stay as they are.
+    /// The input of the learned part is replaced by white noise of the same range; its targets stay the same.
     NoiseForInput,
 }
 
 impl Ablation {
-    /// Both, in the order of tables.
+    /// Both ablations, in the order of tables.
     pub const ALL: [Self; 2] = [Self::LearnedPartAtZero, Self::NoiseForInput];
 
-    /// The name as files write it.
+    /// Returns the name used in files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -112,7 +113,7 @@ impl Ablation {
     }
 }
 
-/// Where a method comes from.
+/// Origin of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Family {
@@ -120,15 +121,15 @@ pub enum Family {
     Classical,
     /// An estimator that learns.
     Learned,
-    /// A library that is not of this project.
+    /// A third-party library.
     Library,
 }
 
 impl Family {
-    /// Every family.
+    /// All families.
     pub const ALL: [Self; 3] = [Self::Classical, Self::Learned, Self::Library];
 
-    /// The name as files write it.
+    /// Returns the name used in files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

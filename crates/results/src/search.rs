@@ -1,8 +1,8 @@
-//! A search over settings: how its points are chosen, what they are judged by, and what it found.
+//! Search over settings: choice of its points, measure by which they are judged, and result.
 
 use serde::{Deserialize, Serialize};
 
-/// How a sweep chooses its points.
+/// Method by which a sweep chooses its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepSampler {
@@ -15,7 +15,7 @@ pub enum SweepSampler {
 }
 
 impl SweepSampler {
-    /// Its name, as in files.
+    /// Returns the name used in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -25,106 +25,108 @@ impl SweepSampler {
         }
     }
 
-    /// Whether it proposes points from the results of those before them.
+    /// Returns `true` if the sampler proposes points from the results of earlier points.
     #[must_use]
     pub fn looks_at_results(self) -> bool {
         self == Self::Tpe
     }
 }
 
-/// Search of a sweep: a part of its manifest.
+/// Search settings of a sweep: a part of its manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepSearch {
-    /// Choice of points.
+    /// Sampler that chooses the points.
     pub sampler: SweepSampler,
-    /// Points in all.
+    /// Total number of points.
     pub trials: usize,
-    /// Points that are proposed at once, all from the results of those before them where the sampler looks at results.
+    /// Number of points proposed at once. A sampler that uses results proposes all of them from the results
+    /// of earlier batches.
     pub batch: usize,
     /// Seed of the draws.
     pub seed: u64,
-    /// Dotted path of a number in the runs' `result.json`.
+    /// Dotted path of the measure: a number in the runs' `result.json`.
     pub measure: String,
-    /// True if more is better.
+    /// `true` if larger values of the measure are better.
     pub maximize: bool,
-    /// Early stopping of the worse trials, where it was asked for.
+    /// Early stopping of the worse trials; `None` if it is off.
     pub halving: Option<SweepHalving>,
 }
 
-/// Successive halving: every trial trains for a while, the best of them go on.
+/// Successive halving: every trial trains for some steps, then only the best continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepHalving {
-    /// Steps of the trace after which the first rung stops.
+    /// Number of trace steps after which the first rung stops.
     pub first_steps: u64,
-    /// One trial of so many goes on to the next rung, which is so many times as long.
+    /// Reduction factor: one in this many trials continues to the next rung, which is this many times as
+    /// long.
     pub keep_one_in: usize,
-    /// The rungs that are done, in their order.
+    /// Finished rungs, in order.
     pub rungs: Vec<SweepRung>,
 }
 
-/// A rung that is done.
+/// A finished rung.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepRung {
-    /// Steps of the trace after which it stopped; `None` where trials ran to their end.
+    /// Number of trace steps after which the rung stopped; `None` if trials ran to their end.
     pub steps: Option<u64>,
-    /// Measure of each trial on it.
+    /// Measure of each trial on the rung.
     pub values: Vec<SweepRungValue>,
 }
 
-/// Value that a trial had reached on a rung.
+/// Value of the measure that a trial reached on a rung.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SweepRungValue {
     /// Number of the trial.
     pub number: usize,
-    /// Its measure; `None` where it failed.
+    /// Value of the measure; `None` if the trial failed.
     pub value: Option<f64>,
 }
 
 /// Result of a search: a part of its table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchOutcome {
-    /// Choice of points, as [`SweepSearch::sampler`].
+    /// Sampler that chose the points, as [`SweepSearch::sampler`].
     pub sampler: SweepSampler,
-    /// Measure that trials are judged by, as [`SweepSearch::measure`].
+    /// Measure by which trials are judged, as [`SweepSearch::measure`].
     pub measure: String,
     /// Direction of the search, as [`SweepSearch::maximize`].
     pub maximize: bool,
-    /// Points that were asked for.
+    /// Number of points requested.
     pub trials: usize,
-    /// Trials with a value of the measure at their end.
+    /// Number of trials with a value of the measure at their end.
     pub measured: usize,
-    /// Trials that were stopped early.
+    /// Number of trials stopped early.
     pub stopped: usize,
-    /// Trials that failed, which count as the worst.
+    /// Number of failed trials, which count as the worst.
     pub failed: usize,
-    /// The best of the measured.
+    /// Best of the measured trials; `None` if no trial was measured.
     pub best: Option<SearchBest>,
-    /// Warning to the reader about the choice of measure.
+    /// Warning about the choice of the measure, for the reader.
     pub warning: Option<String>,
 }
 
 /// The best trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchBest {
-    /// Its number.
+    /// Number of the trial.
     pub number: usize,
-    /// Its folder, from the sweep's.
+    /// Folder of the trial's run, relative to the sweep's folder.
     pub run: String,
-    /// Its measure.
+    /// Value of the measure.
     pub value: f64,
     /// Overrides of the configuration, as `key=value`.
     pub overrides: Vec<String>,
-    /// Its configuration, from the sweep's folder, ready to be run.
+    /// Path of the trial's configuration, relative to the sweep's folder; it can be run as it is.
     pub config: String,
 }
 
-/// Six digits, for a sentence.
+/// Rounds a value to six significant digits, for a sentence.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 impl SearchOutcome {
-    /// The outcome as a sentence or a few.
+    /// Returns the outcome in one or a few sentences.
     #[must_use]
     pub fn sentence(&self) -> String {
         let direction = if self.maximize { "largest" } else { "least" };

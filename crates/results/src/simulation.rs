@@ -1,51 +1,51 @@
-//! What a simulation leaves beside its records.
+//! Results of a simulation beside its records.
 
 use serde::{Deserialize, Serialize};
 
 /// The `schema` field of a manifest.
 pub const RECORDS_SCHEMA: &str = "ringdown.records/1";
 
-/// The content of a simulation's `result.json`. It says nothing of what a single record was generated from.
+/// The content of a simulation's `result.json`. It does not reveal what a single record was generated from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimulationResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"simulate"`.
+    /// Task of the run: `"simulate"`.
     pub task: String,
     /// The configuration's name.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of all random draws.
     pub seed: u64,
-    /// Systems asked for.
+    /// Number of systems requested.
     pub systems: u64,
-    /// Records written.
+    /// Number of records written.
     pub records: u64,
-    /// True if all that were asked for are there: an interrupted simulation has fewer.
+    /// `true` if all requested records were written; an interrupted simulation has fewer.
     pub complete: bool,
-    /// Samples in all records together.
+    /// Number of samples in all records together.
     pub samples: u64,
-    /// Number of systems that have each effect of the configuration.
+    /// Number of systems with each effect of the configuration.
     pub effects: Vec<EffectCount>,
-    /// Folder of the records, from the run's folder.
+    /// Folder of the records, relative to the run's folder.
     pub records_folder: String,
-    /// Folder of the sealed truths, from the run's folder.
+    /// Folder of the sealed truths, relative to the run's folder.
     pub truth_folder: String,
-    /// SHA-256 over the digests of records and truths in order: equal for equal results.
+    /// SHA-256 over the digests of records and truths in order; equal results have equal digests.
     pub digest: String,
     /// Wall time in seconds.
     pub seconds: f64,
 }
 
-/// Number of systems that have an effect.
+/// Number of systems with one effect.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectCount {
-    /// The effect's id.
+    /// Id of the effect.
     pub id: String,
-    /// Systems that have it.
+    /// Number of systems that have the effect.
     pub systems: u64,
 }
 
-/// The content of `manifest.json`: which truth belongs to which record, by digests that can be published
+/// The content of `manifest.json`: the truth of each record, identified by digests that can be published
 /// before the truths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -58,11 +58,11 @@ pub struct Manifest {
 /// A record and its truth.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestLine {
-    /// The record's file, from the manifest's folder.
+    /// The record's file, relative to the manifest's folder.
     pub record: String,
     /// SHA-256 of that file.
     pub record_digest: String,
-    /// The truth's file, from the manifest's folder.
+    /// The truth's file, relative to the manifest's folder.
     pub truth: String,
     /// SHA-256 of that file: the truth's seal.
     pub truth_digest: String,

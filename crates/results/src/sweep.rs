@@ -1,4 +1,4 @@
-//! A sweep and the table of its runs.
+//! Results of a sweep, and the table of its runs.
 
 use super::method::Reached;
 use super::{RESULT_SCHEMA, SearchOutcome, SweepSearch};
@@ -9,36 +9,37 @@ use serde_json::{Map, Value};
 /// The `schema` field of a sweep's manifest.
 pub const SWEEP_SCHEMA: &str = "ringdown.sweep/1";
 
-/// The content of `sweep.json`: what was frozen before the first run, and what became of each.
+/// The content of `sweep.json`: the plan frozen before the first run, and the state of each run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepManifest {
     /// Always [`SWEEP_SCHEMA`].
     pub schema: String,
-    /// Start of the sweep folder's name.
+    /// First part of the sweep folder's name.
     pub name: String,
-    /// The configuration that every combination starts from, as it was named.
+    /// Path of the base configuration of all combinations, as given by the user.
     pub config: String,
-    /// Version of the program that froze it.
+    /// Version of the program that froze the sweep.
     pub version: String,
-    /// Keys that are varied; the first axis varies slowest.
+    /// Varied keys; the first axis varies slowest.
     pub axes: Vec<SweepAxis>,
-    /// The records that the runs read, with their digests when the sweep was frozen.
+    /// Records that the runs read, with their digests at the time the sweep was frozen.
     pub records: Vec<SweepRecord>,
-    /// Choice of points and the measure that they are judged by, where the sweep searches.
+    /// Settings of the search, if the sweep searches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SweepSearch>,
-    /// One line for each run, in the order of the combinations; of a search with `"tpe"`, those proposed so far.
+    /// One line for each run, in the order of the combinations; for a search with `"tpe"`, the runs proposed
+    /// so far.
     pub runs: Vec<SweepLine>,
 }
 
-/// A key and its values.
+/// A varied key and its values.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SweepAxis {
     /// The dotted key.
     pub key: String,
-    /// The values, as overrides write them; with a scale, the ends of a range.
+    /// The values, in the notation of overrides; with a scale, the two ends of a range.
     pub values: Vec<String>,
-    /// `"linear"` or `"log"`: numbers are drawn from a range; absent where the values are all there are.
+    /// `"linear"` or `"log"` if numbers are drawn from a range; absent if `values` lists all values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
 }
@@ -57,17 +58,19 @@ pub struct SweepRecord {
 pub struct SweepLine {
     /// Position in the list, from 1.
     pub number: usize,
-    /// SHA-256 of every value in force: the run's identity.
+    /// SHA-256 of all values in force: the run's identity.
     pub digest: String,
     /// Overrides of the configuration, as `key=value`.
     pub overrides: Vec<String>,
-    /// The frozen configuration, from the sweep's folder.
+    /// Path of the frozen configuration, relative to the sweep's folder.
     pub config: String,
-    /// State of the run. `sweep.json` is written again now and then; the files in `state/` are first to know.
+    /// State of the run. `sweep.json` is rewritten only now and then; the files in `state/` are up to date
+    /// first.
     pub state: SweepState,
-    /// The run's folder, from the sweep's; none before it began, or where it failed before it had one.
+    /// Folder of the run, relative to the sweep's folder; `None` before the run began, or if it failed before
+    /// it had a folder.
     pub run: Option<String>,
-    /// Reason of a failure, or of having been stopped.
+    /// Reason of the failure, or of an early stop.
     pub message: Option<String>,
 }
 
@@ -75,20 +78,20 @@ pub struct SweepLine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepState {
-    /// Not finished, perhaps not begun.
+    /// Not finished, and perhaps not begun.
     Pending,
-    /// It has a result.
+    /// Finished with a result.
     Done,
-    /// It gave none.
+    /// Ended without a result.
     Failed,
-    /// Stopped on request; what it had is kept, and the run is made again.
+    /// Stopped on request; its results so far are kept, and the run will be repeated.
     Interrupted,
-    /// Stopped early by a search, since others were better; it is not gone on with.
+    /// Stopped early by a search because other runs were better; it will not be continued.
     Stopped,
 }
 
 impl SweepState {
-    /// Returns the name as `sweep.json` writes it.
+    /// Returns the name used in `sweep.json`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -101,7 +104,7 @@ impl SweepState {
     }
 }
 
-/// The content of one file in a sweep's `state/`: a run that came to its end.
+/// The content of a file in a sweep's `state/`: the end of one run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SweepEnd {
     /// Digest of the run's values, as [`SweepLine::digest`].
@@ -114,41 +117,43 @@ pub struct SweepEnd {
     pub message: Option<String>,
 }
 
-/// What put the runs of a table together.
+/// Origin of the runs in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunTableTask {
-    /// A sweep made them.
+    /// The runs of a sweep.
     Sweep,
-    /// They were named by hand.
+    /// Runs named by hand.
     Runs,
 }
 
-/// A table of runs: `result.json` of a sweep (`task = "sweep"`) and what `trainer compare` says (`task = "runs"`).
+/// A table of runs: `result.json` of a sweep (`task = "sweep"`) and the output of `trainer compare` (`task =
+/// "runs"`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunTable {
     /// Always [`RESULT_SCHEMA`].
     pub schema: String,
-    /// What put its runs together.
+    /// Origin of the runs.
     pub task: RunTableTask,
-    /// Name of the sweep; empty for runs that were put together by hand.
+    /// Name of the sweep; empty for runs named by hand.
     pub name: String,
-    /// Keys that a sweep varies.
+    /// Keys that the sweep varies.
     pub axes: Vec<SweepAxis>,
-    /// The configuration keys in which the runs differ, in the order of their columns; of a search, its measure last.
+    /// Configuration keys in which the runs differ, in the order of their columns; for a search, its measure
+    /// comes last.
     pub columns: Vec<String>,
-    /// Result of the search, where the sweep searches.
+    /// Result of the search, if the sweep searches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SearchOutcome>,
-    /// One row for each run; of a comparison of methods one for each method.
+    /// One row for each run; for a comparison of methods, one row for each method.
     pub rows: Vec<RunTableRow>,
-    /// Runs with a result.
+    /// Number of runs with a result.
     pub done: usize,
-    /// Runs that failed or whose folders cannot be read.
+    /// Number of runs that failed or whose folders cannot be read.
     pub failed: usize,
-    /// Runs without a result that may still get one: pending, interrupted, unfinished.
+    /// Number of runs without a result that may still get one: pending, interrupted or unfinished.
     pub open: usize,
-    /// True if no run failed and every result is within its stated tolerance.
+    /// `true` if no run failed and every result is within its stated tolerance.
     pub pass: bool,
 }
 
@@ -156,24 +161,24 @@ pub struct RunTable {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
-    /// It has a result.
+    /// Finished with a result.
     Done,
-    /// Stopped on request; what it had is kept.
+    /// Stopped on request; its results so far are kept.
     Interrupted,
-    /// Stopped early by a search, since others were better.
+    /// Stopped early by a search because other runs were better.
     Stopped,
-    /// It ended without a result and said why.
+    /// Ended without a result and gave a reason.
     Failed,
-    /// No result yet: it runs, or ended before it had one.
+    /// Has no result yet: it is running, or ended before it had one.
     Unfinished,
     /// Not begun.
     Pending,
-    /// The folder cannot be read as a run.
+    /// Its folder cannot be read as a run.
     Corrupt,
 }
 
 impl RunState {
-    /// Returns the name as tables and JSON write it.
+    /// Returns the name used in tables and JSON.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -187,7 +192,7 @@ impl RunState {
         }
     }
 
-    /// Returns whether a reader has to look after it.
+    /// Returns `true` if the user must look into this run.
     #[must_use]
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Failed | Self::Corrupt)
@@ -197,50 +202,50 @@ impl RunState {
 /// One row of a table of runs. Numbers that a run does not have are `null`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunTableRow {
-    /// The run's folder; of a sweep's, from the sweep's folder.
+    /// Folder of the run; for a run of a sweep, relative to the sweep's folder.
     pub run: String,
     /// State of the run.
     pub state: RunState,
-    /// Why there is no estimate; empty where there is one.
+    /// Reason for a missing estimate; empty if there is one.
     pub reason: String,
-    /// Task that was asked for, such as `"estimate"`; empty where that is not known.
+    /// Task of the run, such as `"estimate"`; empty if unknown.
     pub task: String,
-    /// Identifier of the method; empty where there is none or many.
+    /// Identifier of the method; empty if there is none or there are many.
     pub estimator: String,
-    /// The values of [`RunTable::columns`] that the run has.
+    /// Values of the keys in [`RunTable::columns`], as far as the run has them.
     pub settings: Map<String, Value>,
-    /// Where the record came from; `None` where that is not known.
+    /// Origin of the record; `None` if unknown.
     pub origin: Option<Origin>,
-    /// λ/ω.
+    /// Damping ratio ζ, defined as in [`OracleSummary::zeta`](crate::OracleSummary::zeta).
     pub zeta: Option<f64>,
-    /// Standard error of ζ, where the method states one.
+    /// Standard error of ζ, if the method states one.
     pub zeta_std_error: Option<f64>,
-    /// 95 % interval of ζ, where the method states one.
+    /// 95 % interval of ζ, if the method states one.
     pub zeta_interval_95: Option<[f64; 2]>,
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: Option<f64>,
-    /// λ/ω by closed-form least squares on the same envelope.
+    /// ζ by closed-form least squares on the same envelope.
     pub oracle_zeta: Option<f64>,
-    /// The oracle gap: |ζ − ζ_oracle| / ζ_oracle · 100.
+    /// Oracle gap: |ζ − ζ_oracle| / |ζ_oracle| · 100.
     pub error_percent: Option<f64>,
-    /// The largest over the seeds of the run.
+    /// Largest oracle gap over the seeds of the run, in percent.
     pub worst_error_percent: Option<f64>,
-    /// The largest that passes.
+    /// Largest oracle gap that passes, in percent.
     pub tolerance_percent: Option<f64>,
     /// State in which the first seed's fit ended; `None` without an estimate.
     pub reached: Option<Reached>,
-    /// Steps of the first seed's fit.
+    /// Number of training steps of the first seed's fit.
     pub steps: Option<u64>,
     /// Number of trained parameters.
     pub parameters: Option<usize>,
     /// Wall time of a fit, in seconds.
     pub seconds: Option<f64>,
-    /// True if every seed is within the tolerance.
+    /// `true` if every seed is within the tolerance.
     pub pass: Option<bool>,
 }
 
 impl RunTableRow {
-    /// A row without numbers.
+    /// Creates a row without numbers.
     #[must_use]
     pub fn without_numbers(run: &str, state: RunState, reason: &str) -> Self {
         Self {
@@ -269,7 +274,7 @@ impl RunTableRow {
 }
 
 impl RunTable {
-    /// A table of rows, counted. `rows` of one run stand together.
+    /// Creates a table and counts its runs. Rows of the same run must be adjacent.
     #[must_use]
     pub fn new(
         task: RunTableTask,

@@ -1,6 +1,6 @@
-//! Trials on records whose effect is withheld: the content of their `result.json`, `manifest.json` and `cases.csv`.
+//! Results of withheld-effect trials: the content of `result.json`, `manifest.json` and `cases.csv`.
 //!
-//! A number that could not be had is not finite, and `null` in JSON.
+//! A number that cannot be computed is not finite, and `null` in JSON.
 
 use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
 use serde::{Deserialize, Serialize};
@@ -19,52 +19,53 @@ pub struct TrialsManifest {
     pub schema: String,
     /// Name of the trials.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of all random draws.
     pub seed: u64,
     /// Digest of the resolved configuration.
     pub config_digest: String,
-    /// Banks that were asked for and not made, and why.
+    /// Banks that were requested but not made, with the reasons.
     pub left_out: Vec<LeftOutBank>,
-    /// One line a case, in the order in which cases are made.
+    /// One line for each case, in the order in which the cases are made.
     pub cases: Vec<TrialsManifestLine>,
 }
 
 /// A case in the manifest.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrialsManifestLine {
-    /// The case.
+    /// Id of the case.
     pub id: String,
-    /// Folder below `cases` and `answers`: `full`, or `without-` and the effect not considered.
+    /// Folder below `cases` and `answers`: `full`, or `without-` followed by the effect that is not
+    /// considered.
     pub group: String,
     /// SHA-256 of the sealed truth's text, prefixed `sha256:`.
     pub truth_digest: String,
-    /// SHA-256 of each file that the diagnosis is given.
+    /// SHA-256 of each file given to the diagnosis.
     pub files: BTreeMap<String, String>,
 }
 
-/// A share of trials that is done while others are not.
+/// A finished share of trials whose other shares are not finished.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrialsShare {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"trials-share"`.
+    /// Task of the run: `"trials-share"`.
     pub task: String,
-    /// The share, as `2/8`.
+    /// The share, such as `2/8`.
     pub shard: String,
-    /// Cases of the trials.
+    /// Number of cases in the trials.
     pub cases: usize,
-    /// Cases without an answer yet; they belong to other shares.
+    /// Number of cases without an answer yet; they belong to other shares.
     pub open: usize,
 }
 
-/// Share of independent cases in which something was so.
+/// Share of independent cases that have a property.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Proportion {
-    /// Cases where it was.
+    /// Number of cases with the property.
     pub count: u64,
-    /// Cases.
+    /// Number of all cases.
     pub of: u64,
-    /// The share; not finite, in JSON `null`, of no cases.
+    /// The share; not finite, in JSON `null`, if there are no cases.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub share: f64,
     /// 95 % interval by Clopper and Pearson.
@@ -77,377 +78,386 @@ pub struct Proportion {
 pub struct TrialsResult {
     /// Always [`TRIALS_SCHEMA`].
     pub schema: String,
-    /// Task that was asked for: `"trials"`.
+    /// Task of the run: `"trials"`.
     pub task: String,
     /// Name of the trials.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of all random draws.
     pub seed: u64,
-    /// Cases made.
+    /// Number of cases.
     pub cases: u64,
-    /// Cases without an answer; they count as wrong.
+    /// Number of cases without an answer; they count as wrong.
     pub unanswered: u64,
-    /// Banks that were not made, and why.
+    /// Banks that were not made, with the reasons.
     pub left_out: Vec<LeftOutBank>,
-    /// Meaning of `right`, by kind of case.
+    /// Definition of a right answer for each kind of case.
     pub right_means: String,
-    /// The bars, in the order of their document.
+    /// Acceptance bars, in the order of the document that defines them.
     pub bars: Vec<BarRow>,
-    /// Values that the configuration's gate asks for; empty where it asks for none.
+    /// Bars of the configuration's gate; empty if it has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gate: Vec<BarRow>,
-    /// Scores by effect and by class where several effects act; empty without such banks.
+    /// Scores by effect and by class for banks with several effects at once; empty without such banks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inclusion: Vec<ClassScores>,
-    /// Accuracy by bank.
+    /// Accuracy for each bank.
     pub banks: Vec<BankRow>,
-    /// Accuracy by bank, effect and size.
+    /// Accuracy for each bank, effect and size.
     pub effects: Vec<SizeRow>,
-    /// Accuracy by bank and size, all effects together.
+    /// Accuracy for each bank and size, all effects together.
     pub sizes: Vec<SizeRow>,
-    /// Hidden effect against the first named.
+    /// Confusion matrix of hidden effect and first named effect.
     pub confusion: Confusion,
-    /// Hidden kind against the kind of the answer.
+    /// Confusion matrix of hidden kind and kind of the answer.
     pub kinds: Confusion,
     /// Reliability of stated probabilities.
     pub reliability: Vec<Reliability>,
-    /// Map from stated confidence to the share that was right, from the even cases of the own banks.
+    /// Map from stated confidence to the share of right answers, fitted to the even cases of the own banks.
     pub map: ProbabilityMap,
-    /// Telling what has no name from what has.
+    /// Separation of cases where `unknown` is right from cases where it is wrong.
     pub unknown: UnknownStudy,
-    /// Held-out error over noise floor, of right answers that name an effect.
+    /// Held-out error over noise floor, for right answers that name an effect.
     pub ratio_to_floor: Quantiles,
-    /// Coverage of the intervals of closure: of the closure that the repaired simulator has on the clean motion.
+    /// Coverage of the closure intervals, checked against the repaired simulator's closure on the clean
+    /// motion.
     pub closure: ClosureStudy,
-    /// Wall time of a diagnosis in seconds.
+    /// Wall time of a diagnosis, in seconds.
     pub seconds_per_case: Quantiles,
-    /// Share of cases in which an effect that comes with records of every bank was named.
+    /// Share of cases in which a nuisance was named: an effect that records of every bank have.
     pub nuisances: Vec<NuisanceRow>,
     /// Simpler diagnosers on the same records.
     pub baselines: Vec<BaselineRow>,
-    /// Cases that were answered wrongly or not at all.
+    /// Cases answered wrongly or not at all.
     pub failures: Vec<FailureRow>,
-    /// Wall time of the whole in seconds; of scoring alone where cases were scored again.
+    /// Wall time of the trials, in seconds; of scoring alone if existing answers were scored again.
     pub seconds: f64,
 }
 
 /// A bank that was not made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LeftOutBank {
-    /// Its name.
+    /// Name of the bank.
     pub bank: String,
-    /// Why.
+    /// Reason for leaving it out.
     pub reason: String,
 }
 
-/// A bar and what was measured.
+/// An acceptance bar and the measured value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BarRow {
     /// Name of the measure.
     pub metric: String,
-    /// Smallest value that meets the bar, where there is one.
+    /// Smallest value that meets the bar, if there is one.
     pub at_least: Option<f64>,
-    /// Largest value that meets the bar, where there is one.
+    /// Largest value that meets the bar, if there is one.
     pub at_most: Option<f64>,
-    /// Unit of the numbers; empty for a ratio, `%` for shares, which stand as shares here.
+    /// Unit for display: empty for a ratio, `%` for a share. The numbers of a share are stored as shares, not
+    /// in percent.
     pub unit: String,
     /// Measured value.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub value: f64,
-    /// Its 95 % interval.
+    /// 95 % interval of the measured value.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub interval_95: [f64; 2],
-    /// Cases behind it.
+    /// Number of cases behind the value.
     pub cases: u64,
     /// `met`, `not met` or `not measured here`.
     pub state: String,
-    /// True if the whole interval lies on the wrong side.
+    /// `true` if the whole interval lies on the wrong side of the bar.
     pub missed_beyond_chance: bool,
 }
 
-/// Scores by effect and by class of a group of cases. Effects that explain alike are one class. Where a law outside the
-/// vocabulary, or what a logger does to every record, is of a class, that class counts neither for nor against.
+/// Scores by effect and by class for a group of cases. Effects that act alike form one class. If a nuisance
+/// of the logger or a law outside the vocabulary belongs to a class, naming that class counts neither for nor
+/// against an answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassScores {
-    /// The cases: a bank, or a part of one.
+    /// Group of cases: a bank, or a part of one.
     pub banks: String,
     /// Number of cases.
     pub cases: u64,
-    /// The class of the largest hidden effect is named.
+    /// Share of cases in which the class of the largest hidden effect is named.
     pub leading_named: Proportion,
-    /// Its stated probability is 0.9 or more.
+    /// Share of cases in which the stated probability of that class is 0.9 or more.
     pub leading_sure: Proportion,
-    /// The classes named are those that act; of cases with hidden effects.
+    /// Share of cases with hidden effects in which the named classes are exactly those that act.
     pub set: Proportion,
-    /// Hidden effects whose class is named, by size.
+    /// Share of hidden effects whose class is named, by size.
     pub recall: Vec<RecallRow>,
-    /// Names whose class acts.
+    /// Share of named effects whose class acts.
     pub precision: Proportion,
-    /// Part of the gap attributed to classes that act, of what is attributed to any; over answers that attribute some.
+    /// Share of the attributed gap that is attributed to classes that act, over answers that attribute any.
     pub attributed: Quantiles,
-    /// `unknown`, or a class that the truth allows, where a law outside the vocabulary acts alone.
+    /// Share of cases with a law outside the vocabulary acting alone whose answer is `unknown` or a class
+    /// that the truth allows.
     pub unknown: Proportion,
-    /// Something named, or `unknown`, where nothing is missing.
+    /// Share of cases with nothing missing whose answer names an effect or `unknown`.
     pub false_alarms: Proportion,
-    /// By class.
+    /// Recall and precision by class.
     pub classes: Vec<InclusionRow>,
-    /// By effect.
+    /// Recall and precision by effect.
     pub effects: Vec<InclusionRow>,
 }
 
-/// Hidden effects of a range of sizes.
+/// Recall of hidden effects in a range of sizes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecallRow {
-    /// From and to, as multiples of the noise; the upper end of the last is `null`.
+    /// Lower and upper end of the range, × noise; the upper end of the last range is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub floors: [f64; 2],
-    /// Those whose class is named.
+    /// Share of these effects whose class is named.
     pub named: Proportion,
 }
 
 /// Recall and precision of an effect or a class.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InclusionRow {
-    /// Its id.
+    /// Id of the effect or class.
     pub id: String,
-    /// Named, of the cases in which it acts.
+    /// Share of the cases in which it acts that name it.
     pub recall: Proportion,
-    /// It acts, of the cases in which it is named.
+    /// Share of the cases that name it in which it acts.
     pub precision: Proportion,
-    /// Mean of its stated probability over cases in which it acts; `null` without any.
+    /// Mean stated probability over cases in which it acts; `null` if there are none.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub stated_where_it_acts: f64,
-    /// The same over cases in which it does not.
+    /// Mean stated probability over cases in which it does not act.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub stated_where_it_does_not: f64,
 }
 
-/// Accuracy on a bank.
+/// Accuracy on one bank.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BankRow {
-    /// The bank.
+    /// Name of the bank.
     pub bank: String,
-    /// Status and set right.
+    /// Share of cases with the right status and set of effects.
     pub right: Proportion,
-    /// The first name is that of a hidden effect; without one, nothing named, or `unknown` where that is asked for.
+    /// Share of cases whose first named effect is hidden. Without a hidden effect: nothing named, or
+    /// `unknown` if that is the right answer.
     pub top_1: Proportion,
-    /// Share with the right name first, or one that the answer says it cannot tell from it.
+    /// Share of cases whose first named effect is hidden or, by the answer itself, indistinguishable from a
+    /// hidden one.
     pub class: Proportion,
-    /// Every hidden effect named; of cases with two.
+    /// Share of cases with two hidden effects in which both are named.
     pub both: Proportion,
-    /// At least one of the hidden effects named; of cases with two.
+    /// Share of cases with two hidden effects in which at least one is named.
     pub either: Proportion,
-    /// Something named, or `unknown`, where nothing is missing.
+    /// Share of cases with nothing missing whose answer names an effect or `unknown`.
     pub false_alarms: Proportion,
 }
 
-/// Accuracy at a size.
+/// Accuracy at one size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SizeRow {
-    /// The bank.
+    /// Name of the bank.
     pub bank: String,
-    /// The first hidden effect; empty for all together.
+    /// First hidden effect; empty for all effects together.
     pub effect: String,
-    /// Size in noise units that stands for the range; of a pair that of the smaller.
+    /// Size, × noise, that represents the range; for a pair, of the smaller effect.
     pub size: f64,
-    /// The range of sizes; the upper end of the last is `null`.
+    /// Range of sizes; the upper end of the last range is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub range: [f64; 2],
-    /// Share with the right name first, as in [`BankRow::top_1`].
+    /// Share with the right effect named first, as in [`BankRow::top_1`].
     pub top_1: Proportion,
-    /// Share with the right class first, as in [`BankRow::class`].
+    /// Share with the right class named first, as in [`BankRow::class`].
     pub class: Proportion,
-    /// Share of pairs of which both are named, as in [`BankRow::both`].
+    /// Share of pairs in which both effects are named, as in [`BankRow::both`].
     pub both: Proportion,
 }
 
-/// Counts of what was against what was said.
+/// Confusion matrix: counts of truths against answers.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Confusion {
-    /// Names of the rows: what was.
+    /// Names of the rows: truths.
     pub hidden: Vec<String>,
-    /// Names of the columns: what was said.
+    /// Names of the columns: answers.
     pub said: Vec<String>,
-    /// Counts, row by row.
+    /// Counts, one vector for each row.
     pub counts: Vec<Vec<u64>>,
 }
 
 /// Reliability of stated probabilities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reliability {
-    /// `confidence`, `confidence, mapped`, `effects` or `classes`.
+    /// Kind of probability: `confidence`, `confidence, mapped`, `confidence, not mapped`, `effects` or
+    /// `classes`.
     pub subject: String,
-    /// `own`, `stressed`, or a group of [`ClassScores::banks`].
+    /// Banks: `own`, `own, not fitted`, `stressed`, `measured and engine`, or a group of
+    /// [`ClassScores::banks`].
     pub banks: String,
-    /// Probabilities looked at.
+    /// Number of probabilities.
     pub count: u64,
-    /// Expected calibration error over bins of equal count, its 95 % interval by a bootstrap over cases.
+    /// Expected calibration error over bins of equal count, with a 95 % interval from a bootstrap over cases.
     pub calibration_error: WithInterval,
-    /// Average of that error for probabilities that are exactly right, as many as here.
+    /// Average of that error for the same number of probabilities that are exactly right.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub calibration_error_by_chance: f64,
-    /// Mean square of probability less outcome.
+    /// Brier score: mean square of probability minus outcome.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub brier: f64,
-    /// At most ten bins of equal count.
+    /// Bins of equal count, at most ten.
     pub bins: Vec<ReliabilityBin>,
 }
 
 /// A bin of probabilities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReliabilityBin {
-    /// Smallest and largest probability in it.
+    /// Smallest and largest probability in the bin.
     pub range: [f64; 2],
-    /// Their mean.
+    /// Mean probability in the bin.
     pub stated: f64,
-    /// Share that was so.
+    /// Share of the statements in the bin that were true.
     pub found: Proportion,
 }
 
-/// A map from stated to found probabilities.
+/// A map from stated probabilities to observed shares.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ProbabilityMap {
-    /// Method by which the map was made.
+    /// Method that fitted the map.
     pub method: String,
-    /// Stated and found, rising; linear between, constant beyond.
+    /// Pairs of stated probability and observed share, increasing; linear between them, constant beyond them.
     pub knots: Vec<[f64; 2]>,
-    /// Cases it was fitted to.
+    /// Number of cases that the map was fitted to.
     pub fitted_to: u64,
 }
 
-/// Telling what has no name from what has.
+/// Separation of cases where `unknown` is right from cases where it is wrong.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UnknownStudy {
-    /// All sizes together first, then by size.
+    /// Areas under the curve: all sizes together first, then by size.
     pub areas: Vec<AreaRow>,
-    /// Shares of positives and of negatives above each threshold: false alarms, then hits.
+    /// Receiver operating characteristic: shares of negatives (false alarms) and of positives (hits) above
+    /// each threshold.
     pub curve: Vec<[f64; 2]>,
 }
 
 /// An area under the receiver operating characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AreaRow {
-    /// Size in noise units; `null` for all together.
+    /// Size, × noise; `null` for all sizes together.
     pub size: Option<f64>,
-    /// Cases where `unknown` is right.
+    /// Number of cases where `unknown` is right.
     pub positives: u64,
-    /// Cases where it is wrong.
+    /// Number of cases where `unknown` is wrong.
     pub negatives: u64,
-    /// The area with its 95 % interval.
+    /// Area with its 95 % interval.
     pub area: WithInterval,
 }
 
 /// Quantiles of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
-    /// Its size.
+    /// Size of the sample.
     pub count: u64,
-    /// The median, with its 95 % interval by order statistics.
+    /// Median with its 95 % interval by order statistics.
     pub median: WithInterval,
-    /// The 95 % quantile.
+    /// 95 % quantile.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub quantile_95: f64,
-    /// The largest.
+    /// Largest value.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub worst: f64,
 }
 
-/// Coverage of the intervals of closure.
+/// Coverage of the closure intervals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClosureStudy {
     /// Definition of the true closure.
     pub means: String,
-    /// Share of intervals that hold it.
+    /// Share of intervals that contain the true closure.
     pub coverage: Proportion,
-    /// Number of cases in which it lies below the interval.
+    /// Number of cases in which the true closure lies below the interval.
     pub below: u64,
-    /// Number of cases in which it lies above.
+    /// Number of cases in which the true closure lies above the interval.
     pub above: u64,
-    /// Cases left out, by reason.
+    /// Number of cases left out, by reason.
     pub left_out: BTreeMap<String, u64>,
 }
 
-/// Share of cases in which an effect that comes with all records was named.
+/// Share of cases in which one nuisance was named: an effect that records of every bank have.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NuisanceRow {
-    /// Its id.
+    /// Id of the effect.
     pub id: String,
-    /// Named, of the answered cases that have it.
+    /// Share of the answered cases with the effect that name it.
     pub named: Proportion,
 }
 
-/// A simpler diagnoser.
+/// Scores of a simpler diagnoser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BaselineRow {
-    /// Its id.
+    /// Id of the diagnoser.
     pub id: String,
-    /// Method, in a sentence.
+    /// Method as a sentence.
     pub method: String,
-    /// First name right, on the bank of single effects.
+    /// Share of cases with the right effect named first, on the bank of single effects.
     pub top_1: Proportion,
-    /// The diagnosis on the same cases.
+    /// The same share for the diagnosis on the same cases.
     pub diagnosis: Proportion,
-    /// Something named where nothing is missing.
+    /// Share of cases with nothing missing in which something was named.
     pub false_alarms: Proportion,
-    /// First name right by size, on the bank of single effects.
+    /// Share of cases with the right effect named first by size, on the bank of single effects.
     pub sizes: Vec<SizeRow>,
 }
 
 /// A case answered wrongly or not at all.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FailureRow {
-    /// The case.
+    /// Id of the case.
     pub id: String,
-    /// Its bank.
+    /// Name of its bank.
     pub bank: String,
-    /// Hidden effects, or the law that acts.
+    /// Hidden effects, or the law outside the vocabulary that acts.
     pub hidden: String,
-    /// Answer, or the reason why there is none.
+    /// Answer, or the reason for a missing one.
     pub said: String,
-    /// Size in noise units of what was hidden; of a pair of the smaller one.
+    /// Size of the hidden effect, × noise; for a pair, of the smaller effect.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub size: f64,
-    /// True if the answer says that it cannot tell what it named from what was hidden.
+    /// `true` if the answer states that the named and the hidden effect are indistinguishable.
     pub same_class: bool,
-    /// Diagnoses this case alone again.
+    /// Command that diagnoses this case alone again.
     pub command: String,
 }
 
 /// One row of `cases.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialCaseRow {
-    /// The case.
+    /// Id of the case.
     pub id: String,
-    /// Its bank.
+    /// Name of its bank.
     pub bank: String,
     /// Hidden effects, joined by `+`.
     pub hidden: String,
-    /// Their sizes in noise units, joined by `+`.
+    /// Sizes of the hidden effects, × noise, joined by `+`.
     pub size: String,
-    /// Status of the answer; `no answer` where there is none.
+    /// Status of the answer; `no answer` if there is none.
     pub status: String,
-    /// Effects named beside nuisances, best first, joined by `+`.
+    /// Named effects without nuisances, best first, joined by `+`.
     pub named: String,
-    /// Stated probability of status and set.
+    /// Stated joint probability of status and set of effects.
     pub confidence: Option<f64>,
     /// Stated probability of `unknown`.
     pub unknown: Option<f64>,
-    /// Status and set right.
+    /// `true` if status and set of effects are right.
     pub right: bool,
-    /// First name right.
+    /// `true` if the first named effect is right.
     pub top_1: bool,
-    /// First name right, or in one class with it.
+    /// `true` if the first named effect is right or in one class with the right one.
     pub class: bool,
-    /// Held-out error over noise floor.
+    /// Held-out error over the noise floor.
     pub ratio_to_floor: Option<f64>,
     /// Stated closure of the gap.
     pub closure: Option<f64>,
-    /// Lower end of its interval.
+    /// Lower end of the closure's interval.
     pub closure_low: Option<f64>,
-    /// Upper end of its interval.
+    /// Upper end of the closure's interval.
     pub closure_high: Option<f64>,
-    /// Closure on the clean motion.
+    /// Closure of the repaired simulator on the clean motion.
     pub true_closure: Option<f64>,
-    /// Wall time of the diagnosis in seconds.
+    /// Wall time of the diagnosis, in seconds.
     pub seconds: Option<f64>,
 }

@@ -13,13 +13,14 @@ use workflow::{Answer, Question, series_rows};
 /// Options of a diagnosis, with the defaults of the command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiagnosisOptions {
-    /// Probability with which an effect is named where there is none: 0.001 to 0.2.
+    /// False-alarm probability of the search, 0.001 to 0.2: the chance that noise alone lets a candidate into
+    /// the sets that are fitted and weighed.
     pub false_alarm: f64,
-    /// Most effects named together: 1 to 5.
+    /// Largest number of effects in one fitted set: 1 to 5.
     pub most_effects: usize,
-    /// Ids of effects that are not considered.
+    /// Ids of effects to exclude.
     pub without: Vec<String>,
-    /// Root of the random draws (bootstraps).
+    /// Root seed of the random draws (bootstraps).
     pub seed: u64,
 }
 
@@ -56,14 +57,14 @@ impl DiagnosisOptions {
     }
 }
 
-/// Diagnoses the gap between a nominal simulator and records of one system: where it lies, which effects cause it, how far it
-/// closes.
+/// Diagnoses the gap between a nominal simulator and records of one system: its location, the effects that
+/// cause it, and the share of it that they close.
 ///
-/// The answer depends on nothing but its arguments, to the bit and for any number of threads, times aside.
+/// Apart from times, the answer depends only on the arguments, to the bit and for any number of threads.
 ///
 /// # Errors
-/// [`Error::Record`] for records that cannot be of this system, [`Error::Diagnosis`] for records that say nothing of it,
-/// [`Error::Config`] for options out of range.
+/// [`Error::Record`] for records that cannot be of this system, [`Error::Diagnosis`] for records that carry
+/// no information about it, [`Error::Config`] for options out of range.
 ///
 /// ```
 /// use ringdown_lab::{DiagnosisOptions, Nominal, Simulation, diagnose, result::VerdictStatus};
@@ -92,11 +93,11 @@ pub fn diagnose(
     diagnose_watched(records, nominal, options, &|_| true)
 }
 
-/// Diagnoses as [`diagnose`] does; `goes_on` is called after each stage but the last with the stage's name, such as `search`, and
-/// ends the diagnosis where it gives false.
+/// Diagnoses like [`diagnose`], with a callback. `goes_on` is called after each stage but the last with the
+/// stage's name, such as `search`; if it returns `false`, the diagnosis ends.
 ///
 /// # Errors
-/// As [`diagnose`], and [`Error::Diagnosis`] where it was ended.
+/// As [`diagnose`], and [`Error::Diagnosis`] if `goes_on` ended it.
 pub fn diagnose_watched(
     records: &[Record],
     nominal: &Nominal,
@@ -111,7 +112,8 @@ pub fn diagnose_watched(
     Ok(Diagnosis { result, repaired, series: series_rows(&found.series) })
 }
 
-/// A diagnosis: the content of `diagnosis.json`, the repaired simulator, and the series behind the report's plots.
+/// A diagnosis: the content of `diagnosis.json`, the repaired simulator, and the series behind the report's
+/// plots.
 #[derive(Debug, Clone)]
 pub struct Diagnosis {
     result: DiagnosisResult,
@@ -120,57 +122,59 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The verdict: status, names, confidence, and one plain sentence.
+    /// Returns the verdict: status, named effects, confidence, and one plain sentence.
     #[must_use]
     pub fn verdict(&self) -> &DiagnosisVerdict {
         &self.result.verdict
     }
 
-    /// Classes of effects that explain alike, the most probable first.
+    /// Returns the classes of effects that act alike, the most probable first.
     #[must_use]
     pub fn classes(&self) -> &[ClassRow] {
         &self.result.classes
     }
 
-    /// Effects with their probabilities, coefficients and shares of the gap, best first.
+    /// Returns the effects with their probabilities, coefficients and shares of the gap, best first.
     #[must_use]
     pub fn effects(&self) -> &[EffectRow] {
         &self.result.effects
     }
 
-    /// Errors on parts that were not fitted: of the simulator as given, recalibrated and repaired, beside the noise floor.
+    /// Returns the held-out errors of the nominal, recalibrated and repaired simulators, and the noise floor.
     #[must_use]
     pub fn gap(&self) -> &GapSummary {
         &self.result.gap
     }
 
-    /// Everything that `diagnosis.json` holds, as types.
+    /// Returns the content of `diagnosis.json` as types.
     #[must_use]
     pub fn result(&self) -> &DiagnosisResult {
         &self.result
     }
 
-    /// The observed values beside those of the simulator as given, recalibrated and repaired, sample by sample.
+    /// Returns the observed values and the predictions of the nominal, recalibrated and repaired simulators,
+    /// sample by sample.
     #[must_use]
     pub fn series(&self) -> &[SeriesRow] {
         &self.series
     }
 
-    /// The content of `diagnosis.json`.
+    /// Returns the content of `diagnosis.json` as text.
     ///
     /// # Errors
-    /// [`Error::File`] never in practice: the answer has no value that JSON lacks.
+    /// [`Error::File`], never in practice: the result has no value that JSON cannot hold.
     pub fn to_json(&self) -> Result<String, Error> {
         Ok(runs::to_json("diagnosis.json", &self.result)?)
     }
 
-    /// The repaired simulator: the system with what it lacked, its measurement chain, its start.
+    /// Returns the repaired simulator: the system with the effects that it lacked, its measurement chain and
+    /// its initial state.
     #[must_use]
     pub fn repaired(&self) -> &Repaired {
         &self.repaired
     }
 
-    /// The repaired simulator as a nominal one, to diagnose further records with.
+    /// Returns the repaired simulator as a nominal one, for diagnosing further records.
     ///
     /// # Errors
     /// As [`Nominal::parse`].
@@ -178,16 +182,17 @@ impl Diagnosis {
         Nominal::parse("repaired.toml", &export::configuration(&self.repaired))
     }
 
-    /// The repaired simulator as files, by name: a configuration, equations, and programs for SciPy, Modelica, MuJoCo and URDF.
+    /// Returns the repaired simulator as files, with their names: a configuration, equations, and exports for
+    /// SciPy, Modelica, MuJoCo and URDF.
     #[must_use]
     pub fn files(&self) -> Vec<(&'static str, String)> {
         export::files(&self.repaired)
     }
 
-    /// The report as one HTML page that loads nothing.
+    /// Returns the report as a self-contained HTML page.
     ///
     /// # Errors
-    /// [`Error::Report`] where the answer has no page.
+    /// [`Error::Report`] if no page can be made from the result.
     pub fn report_html(&self) -> Result<String, Error> {
         let result = self.to_json()?;
         let series = runs::to_csv("series.csv", &self.series)?;
@@ -203,10 +208,10 @@ impl Diagnosis {
         Ok(report::render_diagnosis(&texts)?)
     }
 
-    /// Writes the report to a file, in place of one that is there.
+    /// Writes the report to a file, replacing an existing one.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be written, and as [`Diagnosis::report_html`].
+    /// [`Error::File`] if the file cannot be written, and as [`Diagnosis::report_html`].
     pub fn report(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         Ok(runs::write_file(path.as_ref(), self.report_html()?.as_bytes())?)
     }

@@ -1,4 +1,4 @@
-//! Reasons why a call gave no answer.
+//! Errors of the calls in this crate.
 
 use envelope::EnvelopeError;
 use estimator::FitError;
@@ -11,7 +11,8 @@ use simulator::GenerationError;
 use thiserror::Error;
 use workflow::WorkflowError;
 
-/// Reason why a call gave no answer, with the message of the command line: what was found, where, and what to do.
+/// Reason why a call gave no answer, with the message of the command line: the problem, its place and the
+/// remedy.
 ///
 /// Messages name options of the command line (`--unit deg`); the field of [`Reading`](crate::Reading) or
 /// [`Arrays`](crate::Arrays) has the same name.
@@ -26,13 +27,13 @@ use workflow::WorkflowError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A record that cannot be read, or that cannot be of the nominal system.
+    /// A record that cannot be read, or that does not belong to the nominal system.
     #[error(transparent)]
     Record(WorkflowError),
     /// A nominal simulator or an option with a wrong value.
     #[error("{0}")]
     Config(String),
-    /// A record that says nothing of the nominal system.
+    /// A record that carries no information about the nominal system.
     #[error(transparent)]
     Diagnosis(WorkflowError),
     /// A record without an envelope.
@@ -40,33 +41,33 @@ pub enum Error {
     Envelope {
         /// Name of the record.
         record: String,
-        /// The fault.
+        /// The fault found.
         source: EnvelopeError,
     },
-    /// An envelope that least squares has no answer for.
+    /// An envelope for which least squares has no solution.
     #[error("{record}: {source}")]
     LeastSquares {
         /// Name of the record.
         record: String,
-        /// The fault.
+        /// The fault found.
         source: OracleError,
     },
     /// A method that gives no estimate.
     #[error("{method}, seed {seed}: {source}")]
     Fit {
-        /// The method.
+        /// Name of the method.
         method: String,
-        /// The seed that it drew from.
+        /// Seed of the method's random draws.
         seed: u64,
-        /// The fault.
+        /// The fault found.
         source: FitError,
     },
     /// An estimate that is not a finite number.
     #[error("{method}, seed {seed}: the estimate is not finite; lower the estimator's start values or steps")]
     NotFinite {
-        /// The method.
+        /// Name of the method.
         method: String,
-        /// The seed that it drew from.
+        /// Seed of the method's random draws.
         seed: u64,
     },
     /// A system that cannot be simulated.

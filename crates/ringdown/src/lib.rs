@@ -1,4 +1,4 @@
-//! Estimates how much an oscillator is damped, and diagnoses what a simulator of it lacks.
+//! Estimates the damping of an oscillator, and diagnoses the gap between a simulator and records of it.
 //!
 //! # From a record to a damping ratio
 //!
@@ -19,19 +19,20 @@
 //!
 //! # From a record and a simulator to a diagnosis
 //!
-//! [`diagnose`] takes records of one system and a [`Nominal`] simulator, your own or a [`guess`](Nominal::guess), and says where
-//! they part, which effects cause it, and how far the gap closes. The [`Diagnosis`] is the content of `diagnosis.json`, the
-//! repaired simulator, and a report.
+//! [`diagnose`] compares records of one system with a [`Nominal`] simulator, your own or a
+//! [`guess`](Nominal::guess). It finds the location of the gap, the effects that cause it, and the share of
+//! it that they close. A [`Diagnosis`] holds the content of `diagnosis.json`, the repaired simulator, and a
+//! report.
 //!
-//! # What is simulated
+//! # Simulation
 //!
-//! [`Simulation`] makes records with any of the [`effects`] that the diagnosis knows, and with those of the measurement chain.
-//! Such a record says that it is simulated wherever it is shown.
+//! [`Simulation`] makes records with any of the [`effects`] known to the diagnosis, including those of the
+//! measurement chain. Such a record is marked as simulated wherever it is shown.
 //!
-//! # Estimators of one's own
+//! # Custom estimators
 //!
-//! [`contract`] is what an estimator implements; [`estimate_with`] runs one on a record. Every other estimator of the workspace is
-//! built on the same contract.
+//! [`contract`] contains the trait of an estimator; [`estimate_with`] runs a custom one on a record. All
+//! estimators of the workspace implement the same contract.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -63,8 +64,8 @@ pub use export::Repaired;
 pub use results as result;
 pub use workflow::Reading;
 
-/// The contract that every estimator of the workspace fulfills: the peaks and the context that it is given, the estimate that it
-/// gives.
+/// Contract of an estimator, which every estimator of the workspace implements: its inputs (peaks and
+/// context) and its result.
 pub mod contract {
     pub use envelope::{Envelope, Extraction};
     pub use estimator::{
@@ -81,7 +82,8 @@ pub mod learning {
     pub use learn::{Ahead, Context, Fitted, LearnError, Learner, Model, Past, Predicted, Step};
 }
 
-/// Every effect that a simulator may lack: equation, parameters with units and ranges, signature, literature.
+/// Returns all effects that a simulator may lack: equation, parameters with units and ranges, signature,
+/// literature.
 ///
 /// ```
 /// let drag = ringdown_lab::effects().find(|effect| effect.id == "quadratic_drag").unwrap();

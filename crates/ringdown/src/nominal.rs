@@ -1,4 +1,4 @@
-//! The nominal simulator: what is believed of a system.
+//! The nominal simulator: the model of a system before any diagnosis.
 
 use crate::error::Error;
 use crate::record::Record;
@@ -8,9 +8,10 @@ use std::path::Path;
 use workflow::read::coordinate_of;
 use workflow::{Reading, WorkflowError, guess, nominal};
 
-/// The simulator as it is: a linear oscillator, with the effects that it has already.
+/// The nominal simulator: a linear oscillator with the effects that it already has.
 ///
-/// I·θ̈ + c·θ̇ + k·(θ − θ_rest) = g·u(t), in SI units, or with everything divided by the inertia, which is 1 then.
+/// I·θ̈ + c·θ̇ + k·(θ − θ_rest) = g·u(t), in SI units, or with everything divided by the inertia, which is
+/// then 1.
 #[derive(Debug, Clone)]
 pub struct Nominal {
     pub(crate) stated: StatedNominal,
@@ -18,19 +19,21 @@ pub struct Nominal {
 }
 
 impl Nominal {
-    /// Makes a nominal simulator from its coefficients, of an angle and for free motion.
+    /// Creates a nominal simulator of an angle in free motion from its coefficients.
     ///
     /// # Errors
-    /// [`Error::Config`] unless the inertia is above 0, damping and stiffness are 0 or above, and all numbers finite.
+    /// [`Error::Config`] unless the inertia is above 0, damping and stiffness are at least 0, and all numbers
+    /// are finite.
     pub fn new(inertia: f64, damping: f64, stiffness: f64, rest_angle: f64) -> Result<Self, Error> {
         let nominal = dynamics::Nominal::new(inertia, damping, stiffness, rest_angle).map_err(config)?;
         Self::of(NominalSimulator::new(nominal, Vec::new()).map_err(config)?, false)
     }
 
-    /// Makes a nominal simulator from its natural frequency in hertz and its damping ratio, per unit of inertia.
+    /// Creates a nominal simulator per unit of inertia from its natural frequency in hertz and its damping
+    /// ratio.
     ///
     /// # Errors
-    /// [`Error::Config`] unless the frequency is above 0 and the ratio 0 or above.
+    /// [`Error::Config`] unless the frequency is above 0 and the ratio is at least 0.
     ///
     /// ```
     /// use ringdown_lab::Nominal;
@@ -46,10 +49,10 @@ impl Nominal {
         Self::parse("nominal", &text)
     }
 
-    /// Guesses a nominal simulator: the linear oscillator nearest to a record, as `trainer init` writes it.
+    /// Guesses a nominal simulator from a record: the nearest linear oscillator, as `trainer init` writes it.
     ///
     /// # Errors
-    /// [`Error::Record`] where nothing moves or the record is shorter than a few swings.
+    /// [`Error::Record`] if nothing moves or the record is shorter than a few swings.
     ///
     /// ```
     /// use ringdown_lab::{Nominal, Simulation};
@@ -77,7 +80,7 @@ impl Nominal {
         Ok(Self { stated: nominal::read(path)?, name: path.display().to_string() })
     }
 
-    /// Reads a nominal simulator from the text of a `nominal.toml`; `name` is what messages call it.
+    /// Reads a nominal simulator from the text of a `nominal.toml`; messages refer to it as `name`.
     ///
     /// # Errors
     /// As [`Nominal::read`].
@@ -97,8 +100,8 @@ impl Nominal {
         Ok(Self { stated: nominal::parse(name, text)?, name: name.to_owned() })
     }
 
-    /// Adds an effect that the simulator has already, so that no diagnosis names it. A recalibration may move its
-    /// parameters.
+    /// Adds an effect that the simulator already has, so that no diagnosis names it. Recalibration may change
+    /// its parameters.
     ///
     /// # Errors
     /// [`Error::Config`] for an unknown effect or parameter, a value out of range, or an effect given twice.
@@ -118,10 +121,10 @@ impl Nominal {
         Ok(Self { stated: StatedNominal { simulator, ..self.stated }, ..self })
     }
 
-    /// Reads the coordinate as a displacement in meters instead of an angle.
+    /// Changes the coordinate from an angle to a displacement in meters.
     ///
     /// # Errors
-    /// [`Error::Config`] where an effect of it is for angles only.
+    /// [`Error::Config`] if one of the effects is for angles only.
     pub fn of_a_displacement(self) -> Result<Self, Error> {
         let nominal = self.stated.nominal.with_coordinate(Coordinate::Displacement);
         let simulator = NominalSimulator::new(nominal, self.stated.simulator.effects().to_vec());
@@ -129,7 +132,7 @@ impl Nominal {
         Ok(Self { name: self.name, ..made })
     }
 
-    /// Sets the gain of the input: torque or force per unit of it.
+    /// Sets the gain of the input: torque or force per unit of the input.
     ///
     /// # Errors
     /// [`Error::Config`] for a gain that is not finite.
@@ -143,20 +146,20 @@ impl Nominal {
         Ok(Self { name: self.name, ..made })
     }
 
-    /// Reading options for records of this system: columns and units as its coordinate asks for, and an input where it has a
-    /// gain for one.
+    /// Returns reading options for records of this system: columns and units that fit its coordinate, and an
+    /// input if it has an input gain.
     #[must_use]
     pub fn reading(&self, reading: Reading) -> Reading {
         reading.for_nominal(&self.stated)
     }
 
-    /// Inertia, damping, stiffness, rest angle and input gain.
+    /// Returns inertia, damping, stiffness, rest angle and input gain.
     #[must_use]
     pub fn coefficients(&self) -> Coefficients<f64> {
         self.stated.nominal.coefficients()
     }
 
-    /// The simulator as the text of a `nominal.toml`.
+    /// Returns the simulator as the text of a `nominal.toml`.
     #[must_use]
     pub fn to_toml(&self) -> String {
         export::nominal_text(&self.stated.simulator)

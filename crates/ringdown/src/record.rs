@@ -1,4 +1,4 @@
-//! Records, from files and from arrays.
+//! Records from files and from arrays.
 
 use crate::error::Error;
 use record::{
@@ -7,29 +7,29 @@ use record::{
 use std::path::Path;
 use workflow::{Loaded, Reading, WorkflowError};
 
-/// A record of one run of an oscillator: stamps, observed values and, where it is driven, the input.
+/// A record of one run of an oscillator: stamps, observed values and, for a driven system, the input.
 ///
-/// Numbers are kept in SI units with the stamps as written; which clock to believe is decided when the record is used
+/// Numbers are stored in SI units, stamps as written. The clock is chosen when the record is used
 /// ([`ClockChoice`]).
 #[derive(Debug, Clone)]
 pub struct Record {
     pub(crate) loaded: Loaded,
 }
 
-/// Description of arrays, for [`Record::new`]. The default is positions in radians, free motion.
+/// Description of arrays for [`Record::new`]. By default the values are positions in radians, in free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arrays {
     /// Name of the record in messages and results.
     pub name: String,
     /// Unit of the values.
     pub unit: Unit,
-    /// Observed quantity; left open, the unit tells it.
+    /// Observed quantity; `None` to derive it from the unit.
     pub quantity: Option<Quantity>,
-    /// The input that drove the system, one number for each sample.
+    /// Input that drove the system, one number for each sample.
     pub input: Option<Vec<f64>>,
-    /// Unit of the input; left open, numbers are taken as they are.
+    /// Unit of the input; `None` to use the numbers as they are.
     pub input_unit: Option<Unit>,
-    /// The clock to believe.
+    /// Choice of the clock.
     pub clock: ClockChoice,
     /// Origin of the numbers: measured or simulated.
     pub origin: Origin,
@@ -50,7 +50,7 @@ impl Default for Arrays {
 }
 
 impl Arrays {
-    /// The observed quantity: as stated, or as the unit tells it.
+    /// Returns the observed quantity: as stated, else derived from the unit.
     #[must_use]
     pub fn observed_quantity(&self) -> Quantity {
         self.quantity.unwrap_or(match self.unit.si() {
@@ -62,11 +62,11 @@ impl Arrays {
 }
 
 impl Record {
-    /// Makes a record from arrays: stamps in seconds, values in [`Arrays::unit`].
+    /// Creates a record from arrays: stamps in seconds, values in [`Arrays::unit`].
     ///
     /// # Errors
-    /// [`Error::Record`] for fewer than 8 samples, arrays of different lengths, a number that is not finite, or a stamp before
-    /// its predecessor.
+    /// [`Error::Record`] for fewer than 8 samples, arrays of different lengths, a number that is not finite,
+    /// or a stamp smaller than its predecessor.
     ///
     /// ```
     /// use ringdown_lab::{Arrays, Record, Unit};
@@ -127,7 +127,8 @@ impl Record {
         Ok(Self { loaded })
     }
 
-    /// Checks arrays as [`Record::new`] does, without taking or copying them; `name` is what messages call the record.
+    /// Checks arrays as [`Record::new`] does, without taking or copying them; messages refer to the record as
+    /// `name`.
     ///
     /// # Errors
     /// As [`Record::new`].
@@ -137,15 +138,15 @@ impl Record {
 
     /// Reads a record file: CSV with any separator, units and dates in its header, or a host log.
     ///
-    /// Everything that the options leave open is found from the file and told by [`Record::reading`].
+    /// Settings that the options leave open are found from the file; [`Record::reading`] reports them.
     ///
     /// # Errors
-    /// [`Error::Record`] with line, what was expected and the option to set.
+    /// [`Error::Record`] with the line, what was expected and the option to set.
     pub fn read(path: impl AsRef<Path>, reading: &Reading) -> Result<Self, Error> {
         Ok(Self { loaded: Loaded::read(path.as_ref(), reading)? })
     }
 
-    /// Reads a record from the bytes of a file; `name` is what messages call it.
+    /// Reads a record from the bytes of a file; messages refer to it as `name`.
     ///
     /// # Errors
     /// As [`Record::read`].
@@ -163,70 +164,70 @@ impl Record {
         Ok(Self { loaded: Loaded::parse(name, bytes, reading)? })
     }
 
-    /// Number of samples, 8 or more.
+    /// Returns the number of samples, at least 8.
     #[must_use]
     pub fn len(&self) -> usize {
         self.loaded.record.len()
     }
 
-    /// True where there are no samples: never so.
+    /// Returns `true` if there are no samples, which never happens.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.loaded.record.is_empty()
     }
 
-    /// Stamps as written, in seconds.
+    /// Returns the stamps as written, in seconds.
     #[must_use]
     pub fn stamps_s(&self) -> &[f64] {
         self.loaded.record.stamps_s()
     }
 
-    /// Observed values, in [`Record::unit`].
+    /// Returns the observed values, in [`Record::unit`].
     #[must_use]
     pub fn values(&self) -> &[f64] {
         self.loaded.record.values()
     }
 
-    /// Input, where there is one.
+    /// Returns the input, if there is one.
     #[must_use]
     pub fn input(&self) -> Option<&[f64]> {
         self.loaded.record.input()
     }
 
-    /// SI symbol of the values, such as `rad`.
+    /// Returns the SI symbol of the values' unit, such as `rad`.
     #[must_use]
     pub fn unit(&self) -> &'static str {
         self.loaded.record.unit()
     }
 
-    /// Observed quantity.
+    /// Returns the observed quantity.
     #[must_use]
     pub fn quantity(&self) -> Quantity {
         self.loaded.record.quantity()
     }
 
-    /// Name of the record: its path, or that of [`Arrays`].
+    /// Returns the name of the record: its path, or the name in [`Arrays`].
     #[must_use]
     pub fn name(&self) -> &str {
         &self.loaded.source.path
     }
 
-    /// Account of how the record was read, in one line.
+    /// Returns the interpretation of the file in one line.
     #[must_use]
     pub fn reading(&self) -> &str {
         &self.loaded.source.reading.sentence
     }
 
-    /// The clock that is believed: times in seconds, sampling rate, and why.
+    /// Returns the believed clock: times in seconds, sampling rate, and the reason for the choice.
     ///
     /// # Errors
-    /// [`Error::Record`] where no time passes between the stamps.
+    /// [`Error::Record`] if no time passes between the stamps.
     pub fn clock(&self) -> Result<Clock, Error> {
         Ok(self.loaded.believed()?)
     }
 
-    /// The record as CSV text: a first line says where the numbers come from if they were simulated.
-    /// `decimals` of stamps and values, at most 12.
+    /// Returns the record as CSV text with `decimals` decimals of stamps and values, at most 12. Two comment
+    /// lines at the top mark simulated records.
     #[must_use]
     pub fn to_csv(&self, decimals: u8) -> String {
         let decimals = decimals.min(simulator::MOST_DECIMALS);
@@ -234,7 +235,7 @@ impl Record {
         if self.loaded.source.statements.origin == Some(Origin::Simulated) {
             return text;
         }
-        // The first two lines say that it is simulated.
+        // The first two lines mark a record as simulated.
         text.splitn(3, '\n').nth(2).unwrap_or_default().to_owned()
     }
 }

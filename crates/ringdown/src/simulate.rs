@@ -1,4 +1,4 @@
-//! Simulated records.
+//! Simulation of records.
 
 use crate::error::Error;
 use crate::nominal::{Nominal, config};
@@ -10,9 +10,10 @@ use truth::{Draws, Sampling, TRUTH_SCHEMA, Truth};
 pub use truth::{Excitation, Waveform};
 use workflow::Loaded;
 
-/// A simulation of one record: a system with effects, a start, and a measurement chain.
+/// A simulation of one record: a system with effects, an initial state, and a measurement chain.
 ///
-/// It starts at rest at 0.5 rad (or m), is sampled at 200 Hz for 20 s, without noise, with the seed 0.
+/// By default it starts at rest at 0.5 rad (or m) and is sampled at 200 Hz for 20 s, without noise and with
+/// seed 0.
 ///
 /// ```
 /// use ringdown_lab::{Nominal, Simulation};
@@ -49,7 +50,7 @@ pub fn simulate(simulation: &Simulation) -> Result<Record, Error> {
 }
 
 impl Simulation {
-    /// A simulation of a nominal simulator with the effects that it has.
+    /// Creates a simulation of a nominal simulator with its effects.
     #[must_use]
     pub fn of(nominal: &Nominal) -> Self {
         Self {
@@ -65,7 +66,8 @@ impl Simulation {
         }
     }
 
-    /// Adds an effect, in the system or in the measurement chain; [`effects`](crate::effects) lists them.
+    /// Adds an effect to the system or to the measurement chain; [`effects`](crate::effects) lists all
+    /// effects.
     ///
     /// # Errors
     /// [`Error::Config`] for an unknown effect or parameter, or a value out of range.
@@ -74,19 +76,19 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Sets the start: a release from rest at a position in rad or m.
+    /// Sets the initial state: a release from rest at a position in rad or m.
     #[must_use]
     pub fn released_at(self, position: f64) -> Self {
         Self { start: Start::release(position), ..self }
     }
 
-    /// Sets the start: a position in rad or m with a velocity in rad/s or m/s.
+    /// Sets the initial state: a position in rad or m and a velocity in rad/s or m/s.
     #[must_use]
     pub fn starting(self, position: f64, velocity: f64) -> Self {
         Self { start: Start { position, velocity }, ..self }
     }
 
-    /// Sets an input that drives the system; it stands in the record too.
+    /// Sets an input that drives the system; the record contains it too.
     ///
     /// ```
     /// use ringdown_lab::{Excitation, Nominal, Simulation, Waveform};
@@ -101,7 +103,7 @@ impl Simulation {
         Self { excitation: Some(excitation), ..self }
     }
 
-    /// Sets the quantity that the sensor observes: position, velocity or acceleration.
+    /// Sets the observed quantity: position, velocity or acceleration.
     #[must_use]
     pub fn observing(self, quantity: Quantity) -> Self {
         let observed = match quantity {
@@ -112,28 +114,29 @@ impl Simulation {
         Self { observed, ..self }
     }
 
-    /// Sets the sampling: a rate in hertz and a length in seconds.
+    /// Sets the sampling rate in hertz and the length in seconds.
     #[must_use]
     pub fn sampled(self, rate_hz: f64, seconds: f64) -> Self {
         Self { rate_hz, seconds, ..self }
     }
 
-    /// Sets the standard deviation of the sensor's white noise, in the observed unit.
+    /// Sets the standard deviation of the sensor's white noise, in the unit of the observed quantity.
     #[must_use]
     pub fn noise(self, noise: f64) -> Self {
         Self { noise, ..self }
     }
 
-    /// Sets the seed of every random draw.
+    /// Sets the root seed of all random draws.
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// Integrates the motion and sends it through the measurement chain. The record says that it is simulated.
+    /// Integrates the motion and passes it through the measurement chain. The record is marked as simulated.
     ///
     /// # Errors
-    /// [`Error::Config`] for effects that contradict each other, [`Error::Simulation`] for an impossible motion or sampling.
+    /// [`Error::Config`] for effects that contradict each other, [`Error::Simulation`] for an impossible
+    /// motion or sampling.
     pub fn run(&self) -> Result<Record, Error> {
         let (acting, sensing): (Vec<Active>, Vec<Active>) =
             self.effects.iter().partition(|active| matches!(active.effect(), Effect::System(_)));
@@ -153,7 +156,7 @@ impl Simulation {
             draws: Draws { seed: self.seed, branch: vec!["simulate".to_owned()] },
         };
         let record = simulator::generate(&truth)?;
-        // As the file would be read again, with its name and its statement.
+        // The digest is that of the file as it would be read again.
         let text = simulator::csv_text(&record, 9, 9);
         let unit = record.unit();
         let arrays = Arrays::default();

@@ -1,4 +1,4 @@
-//! The interface as a program of its own uses it.
+//! Tests of the interface from the outside, as another program uses it.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
 
@@ -25,7 +25,7 @@ fn a_record_written_as_csv_is_read_again_to_the_bit() {
     let again = Record::parse("again.csv", text.as_bytes(), &Reading::default()).unwrap();
     assert_eq!((again.stamps_s(), again.values()), (record.stamps_s(), record.values()));
 
-    // Arrays say nothing of where they came from, and so does the file.
+    // Arrays do not state their origin, and neither does the file.
     let own = Record::new(record.stamps_s().to_vec(), record.values().to_vec(), Arrays::default()).unwrap();
     assert!(own.to_csv(9).starts_with("time_s,angle_rad\n"));
 }
@@ -42,7 +42,7 @@ fn arrays_are_brought_to_si_units_and_tell_their_quantity() {
     assert_eq!((gyroscope.quantity(), gyroscope.unit()), (Quantity::Velocity, "rad/s"));
     assert!((gyroscope.values()[0] - 3.0_f64.to_radians()).abs() < 1e-15);
     assert!((gyroscope.input().unwrap()[0] - 2e-3).abs() < 1e-18);
-    // A voltage stands for whatever it is said to.
+    // A voltage represents the quantity that is stated for it.
     assert_eq!(of(Unit::Volt, None).quantity(), Quantity::Position);
     assert_eq!(of(Unit::Volt, Some(Quantity::Velocity)).quantity(), Quantity::Velocity);
 }
@@ -63,7 +63,7 @@ fn what_the_simulator_has_already_is_not_named() {
     assert_eq!(named(&arm()), ["coulomb_friction"]);
     let knowing = arm().with_effect("coulomb_friction", &[("torque", 0.8)]).unwrap();
     assert!(named(&knowing).is_empty());
-    // Its text is a nominal simulator with the effect in it.
+    // The text is a nominal simulator that contains the effect.
     let again = Nominal::parse("again.toml", &knowing.to_toml()).unwrap();
     assert_eq!(again.to_toml(), knowing.to_toml());
 }
@@ -78,7 +78,7 @@ fn a_driven_displacement_needs_its_input_and_its_unit() {
     assert_eq!(record.unit(), "m");
     let found = diagnose(std::slice::from_ref(&record), &drive, &DiagnosisOptions::default()).unwrap();
     assert!(found.verdict().effects.is_empty(), "{:?}", found.verdict());
-    // The guess from the record has the gain.
+    // The guess from the record has the input gain.
     let guessed = Nominal::guess(&record).unwrap().coefficients();
     assert!((guessed.input_gain / 2.0 - 1.0).abs() < 0.01, "{guessed:?}");
 
@@ -140,7 +140,7 @@ fn arrays_are_checked_without_being_taken() {
     assert!(checked.to_string().starts_with("log:4"), "{checked}");
 }
 
-/// A learner that says that nothing moves.
+/// A learner whose model never moves.
 struct Still;
 
 impl Learner for Still {
@@ -176,7 +176,7 @@ fn a_learner_of_ones_own_is_scored_beside_the_baselines() {
         let row = told.results.iter().find(|row| row.id == id).unwrap();
         row.test.as_ref().unwrap().free_run_rmse.unwrap()
     };
-    // The nominal simulator is the truth; standing still is wrong by the swing's own size.
+    // The nominal simulator is the truth; the error of standing still is the size of the swing.
     assert!(error("nominal") < 0.005 && error("still") > 0.05, "{} {}", error("nominal"), error("still"));
     assert_eq!(told.problems[0].origin.name(), "simulated");
 }

@@ -1,8 +1,8 @@
-//! What it costs to list a thousand run folders, one of them broken.
+//! Cost of listing a thousand run folders, one of which is damaged.
 //!
 //!     cargo bench -p runs
 //!
-//! The list is checked before it is timed: 999 rows and a red one.
+//! The list is checked before it is timed: 999 finished runs and one corrupt run.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::disallowed_methods, reason = "a benchmark")]
 
@@ -16,7 +16,7 @@ fn main() {
     divan::main();
 }
 
-/// A result with ten seeds and four pipelines, as long as those of the shipped configurations.
+/// Result with ten seeds and four pipelines, about as long as the results of the shipped configurations.
 fn result() -> Value {
     let seed = |seed: u64| {
         json!({ "seed": seed, "decay_rate": 0.191_836_585, "zeta": 0.009_159_522, "error_percent": 3.8e-6,

@@ -1,12 +1,14 @@
-//! What a checkpoint costs: a write under a digest, flushed to the disk, for states of several sizes.
+//! Cost of a checkpoint: a sealed write, flushed to disk, for states of several sizes.
 //!
-//! `cargo bench -p runs`; the place is the system's for temporary files, `TMPDIR` names another disk.
+//! Run with `cargo bench -p runs`. The files go to the system's folder for temporary files; `TMPDIR` selects
+//! another disk.
 
 #![allow(missing_docs, clippy::expect_used, reason = "a benchmark")]
 
 use runs::RunFolder;
 
-/// Bytes: a perceptron under Levenberg-Marquardt, an amortized network under Adam with its trace, a thousand fits.
+/// Sizes in bytes: a perceptron under Levenberg-Marquardt, an amortized network under Adam with its trace, a
+/// thousand fits.
 const SIZES: [usize; 3] = [3_000, 100_000, 3_000_000];
 
 #[divan::bench(args = SIZES)]

@@ -1,4 +1,4 @@
-//! Writing a file so that a crash leaves the old one or the new one.
+//! Atomic file writes: a crash leaves either the old file or the new one.
 
 use crate::disk::Disk;
 use crate::error::RunError;
@@ -7,8 +7,9 @@ use tempfile::NamedTempFile;
 
 /// Writes a file: temporary file in the same folder, flush to disk, rename, flush of the folder.
 ///
-/// A crash before the rename leaves what was there, and perhaps a file named `.tmp…`; after it, the new
-/// content. Where the last flush fails the new content is there and may not last through a power cut.
+/// A crash before the rename leaves the old content, and perhaps a file named `.tmp…`; a crash after it
+/// leaves the new content. If the last flush fails, the new content is in place but may not survive a power
+/// cut.
 pub(crate) fn write(disk: &Disk, path: &Path, content: &[u8]) -> Result<(), RunError> {
     let file = fill(disk, path, content)?;
     disk.flush(file.as_file()).map_err(RunError::io(path, "flush"))?;
@@ -16,15 +17,16 @@ pub(crate) fn write(disk: &Disk, path: &Path, content: &[u8]) -> Result<(), RunE
     disk.flush_folder(folder_of(path)).map_err(RunError::io(path, "flush the folder of"))
 }
 
-/// Writes one file outside of a run's folder, in place of one that is there: whole, or not at all.
+/// Writes one file outside a run's folder atomically, replacing any existing file.
 ///
 /// # Errors
-/// [`RunError::Io`] with the file and what was tried.
+/// [`RunError::Io`] with the file and the operation that failed.
 pub fn write_file(path: &Path, content: &[u8]) -> Result<(), RunError> {
     write(&Disk::default(), path, content)
 }
 
-/// As [`write`] where there is no such file yet; `false`, and nothing changed, where there is one.
+/// Writes a file as [`write`] does, but only if it does not exist yet. Returns `false`, and changes nothing,
+/// if it exists.
 pub(crate) fn write_new(disk: &Disk, path: &Path, content: &[u8]) -> Result<bool, RunError> {
     let file = fill(disk, path, content)?;
     disk.flush(file.as_file()).map_err(RunError::io(path, "flush"))?;
@@ -35,14 +37,15 @@ pub(crate) fn write_new(disk: &Disk, path: &Path, content: &[u8]) -> Result<bool
     Ok(true)
 }
 
-/// As [`write`], without waiting for the disk: a crash of the program leaves a whole file or none, a power cut
-/// may take it. For what a seed gives again; ten thousand flushes take longer than making the files.
+/// Writes a file as [`write`] does, without waiting for the disk: a crash of the program leaves a whole file
+/// or none, a power cut may lose it. Meant for files that a seed can reproduce, because ten thousand flushes
+/// take longer than computing the files.
 pub(crate) fn write_unflushed(disk: &Disk, path: &Path, content: &[u8]) -> Result<(), RunError> {
     let file = fill(disk, path, content)?;
     disk.rename(file, path).map_err(RunError::io(path, "rename into place"))
 }
 
-/// A temporary file in the same folder, with the content.
+/// Creates a temporary file with the content in the folder of `path`.
 fn fill(disk: &Disk, path: &Path, content: &[u8]) -> Result<NamedTempFile, RunError> {
     let mut file = disk.temporary_in(folder_of(path)).map_err(RunError::io(path, "create"))?;
     disk.write(file.as_file_mut(), content).map_err(RunError::io(path, "write"))?;
@@ -52,7 +55,7 @@ fn fill(disk: &Disk, path: &Path, content: &[u8]) -> Result<NamedTempFile, RunEr
 
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
-        // A bare name has an empty parent.
+        // A bare file name has an empty parent.
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     }
@@ -72,7 +75,7 @@ mod tests {
         assert!(write_new(&disk, &path, b"first").unwrap());
         assert!(!write_new(&disk, &path, b"second").unwrap());
         assert_eq!(std::fs::read(&path).unwrap(), b"first");
-        // No system takes a name so long.
+        // No file system accepts a name this long.
         let refused = write_new(&disk, &folder.path().join("x".repeat(5000)), b"").unwrap_err();
         assert!(matches!(refused, RunError::Io { .. }), "{refused}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);

@@ -1,4 +1,5 @@
-//! Reading run folders that others have left: whatever is in them, one answer each.
+//! Catalog of run folders: reads folders that other processes left, one entry for each, whatever they
+//! contain.
 
 use crate::error::RunError;
 use crate::events::{EVENTS, Event, readable};
@@ -16,44 +17,45 @@ use settings::Document;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Files of which every run has at least one.
+/// Names of a run's files; every run has at least one of them.
 const FILES: [&str; 6] =
     ["config.toml", "events.jsonl", "result.json", "diagnosis.json", "rigs.json", "environment.json"];
 
-/// A run folder as it was found.
+/// Run folder in the state in which it was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptRun {
-    /// The folder.
+    /// Path of the folder.
     pub path: PathBuf,
-    /// Its own name.
+    /// Name of the folder.
     pub name: String,
-    /// Whether it is done.
+    /// State of the run, such as done or interrupted.
     pub state: RunState,
-    /// Why it has no result; empty where it has one.
+    /// Reason why there is no result; empty if there is one.
     pub reason: String,
-    /// When it began: by its first event, else when the folder was last changed.
+    /// Start time: time of the first event, otherwise the time at which the folder was last changed.
     pub started: Option<Timestamp>,
-    /// What was asked for; empty where that is not known.
+    /// Task of the run; empty if unknown.
     pub task: String,
-    /// The estimator, or how many methods there are; empty where there is none.
+    /// Name of the estimator, or the number of methods; empty if there is none.
     pub estimator: String,
-    /// What came out, of tasks that have no estimate; else empty.
+    /// One-line result of a task that has no estimate; otherwise empty.
     pub summary: String,
-    /// The resolved configuration, where there is one.
+    /// Resolved configuration, if there is one.
     pub config: Option<Document>,
-    /// A row for each method that was fitted, without settings; one without numbers where there is no estimate.
+    /// One row for each fitted method, without settings; a single row without numbers if there is no
+    /// estimate.
     pub rows: Vec<RunTableRow>,
 }
 
 impl KeptRun {
-    /// When it began, in UTC, to the second; empty where that is not known.
+    /// Returns the start time in UTC, to the second; empty if unknown.
     #[must_use]
     pub fn began(&self) -> String {
         self.started.map_or_else(String::new, |time| time.strftime("%Y-%m-%d %H:%M:%S").to_string())
     }
 }
 
-/// What every result says of itself.
+/// Fields that every result has.
 #[derive(Deserialize)]
 struct Tag {
     schema: String,
@@ -61,7 +63,7 @@ struct Tag {
     task: String,
 }
 
-/// What is read of a diagnosis.
+/// Part of a diagnosis that the catalog reads.
 #[derive(Deserialize)]
 struct Diagnosed {
     verdict: Verdict,
@@ -73,7 +75,7 @@ struct Verdict {
     effects: Vec<String>,
 }
 
-/// What a result was found to say.
+/// Content of a result, in the form of the catalog.
 struct Content {
     task: String,
     estimator: String,
@@ -82,11 +84,11 @@ struct Content {
     rows: Vec<RunTableRow>,
 }
 
-/// Every run folder below a folder, newest first. Files, hidden folders and folders of something else are
-/// passed over; an empty folder is a run that did not come to its first file.
+/// Lists every run folder in a folder, newest first. Skips files, hidden folders, and folders without any
+/// file of a run. An empty folder counts as a run that ended before its first file.
 ///
 /// # Errors
-/// [`RunError::Io`] where the folder itself cannot be listed; a run that cannot be read is an entry of its own.
+/// [`RunError::Io`] if the folder itself cannot be listed. A run that cannot be read is an entry of its own.
 pub fn list_runs(root: &Path) -> Result<Vec<KeptRun>, RunError> {
     let entries = std::fs::read_dir(root).map_err(RunError::io(root, "list"))?;
     let mut runs = Vec::new();
@@ -101,19 +103,19 @@ pub fn list_runs(root: &Path) -> Result<Vec<KeptRun>, RunError> {
     Ok(runs)
 }
 
-/// Whether a folder holds something, and nothing of a run.
+/// Returns `true` if a folder is not empty and holds neither files of a run or a sweep nor a lock.
 fn is_something_else(path: &Path) -> bool {
     let is_empty = std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
     !is_empty && !has_run_files(path) && !path.join(LOCK).exists() && !SweepFolder::is_one(path)
 }
 
-/// Whether a folder holds any file that a run has.
+/// Returns `true` if a folder holds any of the files that runs have.
 #[must_use]
 pub fn has_run_files(path: &Path) -> bool {
     FILES.iter().any(|name| path.join(name).exists())
 }
 
-/// Reads a run's folder. What cannot be read is [`RunState::Corrupt`], with the reason.
+/// Reads a run's folder. A folder that cannot be read has state [`RunState::Corrupt`], with the reason.
 #[must_use]
 pub fn read_run(path: &Path) -> KeptRun {
     let events = events(path);
@@ -146,7 +148,7 @@ pub fn read_run(path: &Path) -> KeptRun {
     run
 }
 
-/// Reads result and configuration; an error is the reason why the folder is corrupt.
+/// Reads the result and the configuration; an error is the reason why the folder is corrupt.
 fn fill(run: &mut KeptRun, last: Option<Event>) -> Result<(), String> {
     if !has_run_files(&run.path) {
         return Err("no file of a run is in it".to_owned());
@@ -265,7 +267,8 @@ fn estimation(result: &EstimationResult) -> Content {
     }
 }
 
-/// One row for a run, whatever the number of its learners: they have no damping ratio to stand side by side with.
+/// Summarizes a learning study as one row, whatever its number of learners: they have no damping ratio to
+/// compare side by side.
 fn learning(result: &LearnResult) -> Content {
     let learners: Vec<&LearnRow> =
         result.results.iter().filter(|row| row.kind == LearnKind::Learner).collect();
@@ -341,7 +344,7 @@ fn method(result: &ComparisonResult, row: &MethodRow) -> RunTableRow {
     }
 }
 
-/// A sweep is one entry: how many of its runs are done.
+/// Summarizes a sweep as one entry: the number of runs that are done.
 fn sweep(run: &mut KeptRun) {
     run.task = "sweep".to_owned();
     match SweepFolder::open(&run.path).manifest() {
@@ -364,12 +367,12 @@ fn sweep(run: &mut KeptRun) {
 }
 
 fn name(path: &Path) -> String {
-    // `.` and `..` have a name only once resolved.
+    // `.` and `..` have a name only after resolution.
     let resolved = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The text of a file that a run may have; an error where it is there and cannot be read.
+/// Reads an optional file of a run; an error if it exists and cannot be read.
 fn text(path: &Path, name: &str) -> Result<Option<String>, String> {
     match std::fs::read_to_string(path.join(name)) {
         Ok(text) => Ok(Some(text)),
@@ -378,7 +381,7 @@ fn text(path: &Path, name: &str) -> Result<Option<String>, String> {
     }
 }
 
-/// The first and the last event that can be read.
+/// Reads the first and the last readable event.
 fn events(path: &Path) -> Option<(Event, Event)> {
     let bytes = std::fs::read(path.join(EVENTS)).ok()?;
     Some((readable(&bytes).next()?, readable(&bytes).next_back()?))

@@ -1,17 +1,18 @@
-//! What writing asks of the system: every operation in one place, so that a test can make any of them fail.
+//! File system operations for writing, all in one place, so that a test can make any of them fail.
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Beginning of the names of temporary files. Who is killed while writing leaves one; resuming takes it away.
+/// Prefix of the names of temporary files. A program that is killed while writing leaves one; resuming
+/// removes it.
 pub(crate) const TEMPORARY: &str = ".tmp";
 
-/// The disk that runs are kept on.
+/// Disk on which runs are stored.
 ///
-/// The program's own is [`Disk::default`], the system's as it is. With the feature `faults`, which tests alone turn on,
-/// there are disks whose k-th operation fails.
+/// The program uses [`Disk::default`], the system's disk without changes. With the feature `faults`, which
+/// only tests enable, there are disks whose k-th operation fails.
 #[derive(Debug, Clone, Default)]
 pub struct Disk {
     #[cfg(any(test, feature = "faults"))]
@@ -20,13 +21,14 @@ pub struct Disk {
 
 #[cfg(any(test, feature = "faults"))]
 impl Disk {
-    /// A disk that fails as told.
+    /// Creates a disk that fails as `faults` specifies.
     #[must_use]
     pub fn failing(faults: std::sync::Arc<crate::faults::Faults>) -> Self {
         Self { faults: Some(faults) }
     }
 
-    /// Whether the next operation may happen; of a write, how many of its bytes.
+    /// Decides about the next operation: number of bytes that a write may write, and the result of the
+    /// operation.
     fn permit(&self, bytes: usize) -> (usize, Result<()>) {
         self.faults.as_ref().map_or((bytes, Ok(())), |faults| faults.next(bytes))
     }
@@ -45,7 +47,7 @@ impl Disk {
         self.permit(0).1
     }
 
-    /// Makes a folder and those above it, each flushed in the one that holds it.
+    /// Creates a folder and its missing parents, and flushes each to disk in its parent.
     pub(crate) fn make_folders(&self, path: &Path) -> Result<()> {
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.is_dir();
         let missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
@@ -61,25 +63,25 @@ impl Disk {
         Ok(())
     }
 
-    /// Makes a folder of a name that nobody else has.
+    /// Creates a folder with a unique name.
     pub(crate) fn make_unique_folder(&self, root: &Path, prefix: &str) -> Result<PathBuf> {
         self.allow()?;
         Ok(tempfile::Builder::new().prefix(prefix).rand_bytes(6).tempdir_in(root)?.keep())
     }
 
-    /// A temporary file; it is gone when it is dropped.
+    /// Creates a temporary file, which is deleted when it is dropped.
     pub(crate) fn temporary_in(&self, folder: &Path) -> Result<NamedTempFile> {
         self.allow()?;
         tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder)
     }
 
-    /// A file to be written from its end on.
+    /// Opens a file for appending; creates it if it does not exist.
     pub(crate) fn open_to_append(&self, path: &Path) -> Result<File> {
         self.allow()?;
         OpenOptions::new().create(true).append(true).open(path)
     }
 
-    /// A file to be written and locked, its content left alone.
+    /// Opens a file for writing and locking without changing its content; creates it if it does not exist.
     pub(crate) fn open_to_lock(&self, path: &Path) -> Result<File> {
         self.allow()?;
         OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)
@@ -87,12 +89,12 @@ impl Disk {
 
     pub(crate) fn write(&self, file: &mut File, bytes: &[u8]) -> Result<()> {
         let (count, permitted) = self.permit(bytes.len());
-        // A full disk takes what it can and refuses the rest.
+        // A full disk writes as many bytes as fit and refuses the rest.
         file.write_all(bytes.get(..count).unwrap_or(bytes))?;
         permitted
     }
 
-    /// Takes away what stands in a file behind its first bytes, of which there are so many.
+    /// Truncates a file to its first `bytes` bytes.
     pub(crate) fn shorten(&self, file: &File, bytes: u64) -> Result<()> {
         self.allow()?;
         file.set_len(bytes)
@@ -109,7 +111,8 @@ impl Disk {
         Ok(())
     }
 
-    /// As [`Disk::rename`], to a name that nothing has; `false` where something does.
+    /// Renames a file as [`Disk::rename`] does, but only to an unused name; returns `false` if the name is in
+    /// use.
     pub(crate) fn rename_new(&self, file: NamedTempFile, path: &Path) -> Result<bool> {
         self.allow()?;
         match file.persist_noclobber(path) {
@@ -119,8 +122,8 @@ impl Disk {
         }
     }
 
-    /// Makes a rename or a new file in a folder last through a power cut. Folders cannot be opened for that
-    /// on every system; there it is left to the system.
+    /// Makes a rename or a new file in a folder survive a power cut. Not every system can open folders for
+    /// flushing; on those, this does nothing.
     pub(crate) fn flush_folder(&self, folder: &Path) -> Result<()> {
         if cfg!(unix) {
             self.allow()?;
@@ -129,7 +132,7 @@ impl Disk {
         Ok(())
     }
 
-    /// Takes a file away that nothing needs any more.
+    /// Deletes a file that is no longer needed.
     #[expect(
         clippy::disallowed_methods,
         reason = "temporary files of a killed program, and superseded checkpoints"
@@ -139,14 +142,15 @@ impl Disk {
         std::fs::remove_file(path)
     }
 
-    /// Takes a folder away that nothing needs any more.
+    /// Deletes a folder that is no longer needed.
     #[expect(clippy::disallowed_methods, reason = "the checkpoints of a finished run")]
     pub(crate) fn remove_folder(&self, path: &Path) -> Result<()> {
         self.allow()?;
         std::fs::remove_dir_all(path)
     }
 
-    /// Temporary files are made for their owner only; results are for everybody.
+    /// Sets the permissions of a file. Temporary files are created for their owner only; results are for
+    /// everybody.
     #[cfg(unix)]
     pub(crate) fn share(&self, path: &Path, mode: u32) -> Result<()> {
         use std::os::unix::fs::PermissionsExt;
@@ -165,7 +169,7 @@ mod tests {
     use super::Disk;
     use std::path::Path;
 
-    /// As the default place of runs is, from the current folder.
+    /// A relative path, as that of the default folder for runs is.
     #[test]
     fn a_relative_folder_is_made_in_the_current_one() {
         let name = format!(".made-by-test-{}", std::process::id());

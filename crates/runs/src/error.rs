@@ -1,73 +1,73 @@
-//! Why a run could not be kept or read.
+//! Errors of writing and reading runs.
 
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Why a run could not be kept or read.
+/// Reason why a run could not be written or read.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// The system refused.
+    /// The operating system refused an operation.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
-        /// The file or folder.
+        /// File or folder.
         path: PathBuf,
-        /// What was tried.
+        /// Operation that failed.
         action: &'static str,
-        /// What the system says.
+        /// Error reported by the system.
         source: std::io::Error,
     },
-    /// The folder for the results holds something already.
+    /// The folder for the results is not empty.
     #[error(
         "{} is not empty; results are never written over: name another folder or empty this one",
         path.display()
     )]
     Occupied {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
     },
-    /// Another program works in the folder.
+    /// Another program is working in the folder.
     #[error(
         "{}: {holder} is working in it; wait until it is done, stop it, or name another folder",
         path.display()
     )]
     Locked {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
-        /// Process, machine and time, where they are known.
+        /// Process, machine and time, as far as known.
         holder: String,
     },
-    /// A checkpoint is not what was written.
+    /// A checkpoint differs from what was written.
     #[error(
         "{}: the checkpoint is damaged: {problem}; nothing of it is used. Take the file away and resume again: \
          what it held is computed anew",
         path.display()
     )]
     Damaged {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What does not add up.
+        /// Mismatch that was found.
         problem: String,
     },
-    /// The log of events is not what was written.
+    /// The log of events differs from what was written.
     #[error(
         "{}:{line}: the line has been changed since it was written: {problem}; restore the file, or \
          start again in another folder",
         path.display()
     )]
     Log {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The line, from 1.
+        /// Line number, counted from 1.
         line: usize,
-        /// What does not add up.
+        /// Mismatch that was found.
         problem: String,
     },
-    /// A table or result could not be put into text.
+    /// A table or result could not be encoded as text.
     #[error("{name}: {problem} (a fault of the program, please report it)")]
     Encoding {
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// What the encoder says.
+        /// Error reported by the encoder.
         problem: String,
     },
 }

@@ -1,7 +1,8 @@
-//! `events.jsonl`: what happened when, in lines that a change anywhere would show in.
+//! Log of a run's events with their times, `events.jsonl`, in which any change of a line is detected.
 //!
-//! Every line ends in a digest over itself and the digest before it. A line that a crash cut short can only be the
-//! last one and has no line break; it is left out and said. Anything else that does not add up is refused.
+//! Every line ends in a digest of itself and of the previous digest. Only the last line can have been cut
+//! short by a crash, and it then lacks a line break; it is skipped and reported. Any other mismatch is an
+//! error.
 
 use crate::digest::hexadecimal;
 use crate::disk::Disk;
@@ -12,42 +13,42 @@ use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Name of the file.
+/// Name of the log file.
 pub(crate) const EVENTS: &str = "events.jsonl";
 
-/// A line of the log.
+/// Event, one line of the log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// When, in UTC.
+    /// Time in UTC.
     pub time: String,
-    /// What happened, such as `start`.
+    /// Name of the event, such as `start`.
     pub event: String,
-    /// What belongs to it.
+    /// Data that belong to the event.
     #[serde(default)]
     pub details: Value,
 }
 
-/// The log of a run.
+/// Log of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EventLog {
-    /// Its whole lines, in order.
+    /// Events of the complete lines, in order.
     pub events: Vec<Event>,
-    /// The number, from 1, of a last line that a crash cut short.
+    /// Number of the last line, counted from 1, if a crash cut it short.
     pub torn_line: Option<usize>,
-    /// The whole lines as text.
+    /// Complete lines as text.
     text: String,
-    /// Digest of the last whole line.
+    /// Digest of the last complete line.
     digest: String,
 }
 
 impl EventLog {
-    /// The last event of a name.
+    /// Returns the last event with the given name.
     #[must_use]
     pub fn last(&self, event: &str) -> Option<&Event> {
         self.events.iter().rev().find(|known| known.event == event)
     }
 
-    /// Reads a log; one that is absent is empty.
+    /// Reads a log; a missing file gives an empty log.
     pub(crate) fn read(path: &Path) -> Result<Self, RunError> {
         let bytes = match std::fs::read(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
@@ -85,10 +86,10 @@ impl EventLog {
         Ok(log)
     }
 
-    /// Adds a line at the end of the file; a torn one gives way to it.
+    /// Appends a line to the file. An incomplete last line is replaced.
     ///
-    /// The file is locked meanwhile: shares of a sweep write into one log, and each line's digest follows
-    /// from the one before.
+    /// The file is locked meanwhile: the shares of a sweep write into one log, and each line's digest depends
+    /// on the previous line.
     pub(crate) fn append(path: &Path, disk: &Disk, event: &Event) -> Result<(), RunError> {
         let mut file = disk.open_to_append(path).map_err(RunError::io(path, "open"))?;
         file.lock().map_err(RunError::io(path, "lock"))?;
@@ -100,8 +101,8 @@ impl EventLog {
         let body = text.strip_suffix('}').unwrap_or(&text);
         let line = format!("{body},\"digest\":\"{}\"}}\n", chained(&log.digest, body));
         if log.torn_line.is_some() {
-            // In place: who waits for the lock waits for this very file, and would write into one that
-            // another has displaced.
+            // Truncated in place: a process that waits for the lock waits for this file, and would write into
+            // a file that is no longer in use if another one replaced it.
             disk.shorten(&file, log.text.len() as u64).map_err(RunError::io(path, "shorten"))?;
         }
         disk.write(&mut file, line.as_bytes()).map_err(RunError::io(path, "write"))?;
@@ -115,7 +116,7 @@ impl EventLog {
     }
 }
 
-/// Each with its line break, where it has one.
+/// Splits a text into lines, each with its line break if it has one.
 fn lines(bytes: &[u8]) -> impl DoubleEndedIterator<Item = &[u8]> {
     bytes.split_inclusive(|byte| *byte == b'\n')
 }
@@ -124,13 +125,14 @@ fn event(line: &[u8]) -> Result<Event, serde_json::Error> {
     serde_json::from_slice(line)
 }
 
-/// What of a log can be read, for whoever shows what there is: a line that is damaged or cut short is passed
-/// over. To go on with a run takes [`EventLog::read`].
+/// Returns the readable events of a log, for displaying them: damaged and incomplete lines are skipped.
+/// Resuming a run requires [`EventLog::read`].
 pub(crate) fn readable(bytes: &[u8]) -> impl DoubleEndedIterator<Item = Event> {
     lines(bytes).filter_map(|line| event(line).ok())
 }
 
-/// The first 64 bits of the digest of a line's text after the digest of the line before.
+/// Computes the digest of a line: the first 64 bits of the SHA-256 of the previous line's digest followed by
+/// the line's text.
 fn chained(before: &str, body: &str) -> String {
     let whole = hexadecimal(&Sha256::digest(format!("{before}\n{body}")));
     whole.chars().take(16).collect()
@@ -152,7 +154,8 @@ mod tests {
         assert!(matches!(EventLog::read(folder.path()), Err(RunError::Io { .. })));
     }
 
-    /// A new file's name is flushed with the folder that holds it; an old one's is there already.
+    /// The folder is flushed for a new file, because of its name; the name of an existing file is already on
+    /// disk.
     #[test]
     fn the_folder_is_flushed_for_the_first_line_only() {
         let folder = tempfile::tempdir().unwrap();
@@ -167,7 +170,8 @@ mod tests {
         assert_eq!([operations(), operations()], [first - 1; 2]);
     }
 
-    /// Whatever fails while a torn line gives way, the whole lines stay, and the next attempt adds its own.
+    /// Whichever operation fails while an incomplete line is replaced, the complete lines stay, and the next
+    /// attempt appends its own.
     #[test]
     fn no_failure_takes_a_whole_line_along_with_a_torn_one() {
         let event = Event { time: String::new(), event: "resume".into(), details: json!(null) };
@@ -185,7 +189,7 @@ mod tests {
                 assert_eq!(names[..2], ["start", "one\ntwo"]);
                 if !failed {
                     assert_eq!((&names[2..], log.torn_line), (&["resume"][..], None));
-                    // Open, shorten, write, flush.
+                    // Four operations: open, shorten, write, flush.
                     assert_eq!(first, 4);
                     break;
                 }
@@ -235,7 +239,8 @@ mod tests {
         assert!(log.last("two").is_none());
     }
 
-    /// Every bit of every byte: refused with the line, but for the last line break, without which a line is torn.
+    /// Flips every bit of every byte: each is reported with its line, except in the last line break, without
+    /// which the line counts as incomplete.
     #[test]
     fn a_flipped_bit_anywhere_is_noticed() {
         let folder = tempfile::tempdir().unwrap();
@@ -268,7 +273,8 @@ mod tests {
             let torn = length > 0 && whole[length - 1] != b'\n';
             assert_eq!((log.events.len(), log.torn_line), (lines, torn.then_some(lines + 1)));
         }
-        // The next line takes the torn one's place, in the file that another writer has open and waits for.
+        // The next line replaces the incomplete one in the same file, which another writer has open and waits
+        // for.
         std::fs::write(&path, &whole[..whole.len() - 5]).unwrap();
         let waiting = std::fs::File::open(&path).unwrap();
         let event = Event { time: String::new(), event: "resume".into(), details: json!(null) };

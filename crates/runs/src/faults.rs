@@ -1,9 +1,10 @@
-//! Disks that fail, for tests: nothing here is part of the program, which is built without the feature `faults`.
+//! Disks that fail, for tests. The program is built without the feature `faults`, so none of this is part of
+//! it.
 
 use std::io::{Error, Result};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What the system says when an operation fails.
+/// Error that the system reports if an operation fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Refusal {
     /// EIO: the device failed.
@@ -12,16 +13,17 @@ pub enum Refusal {
     Full,
 }
 
-/// How long a disk fails.
+/// Duration of a failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lasts {
-    /// One operation.
+    /// One operation fails.
     Once,
-    /// Every operation from the first one on, as when the program is killed there.
+    /// All operations fail from the first one on, as if the program were killed there.
     ForGood,
 }
 
-/// Which operation of a disk fails, counted from 0, and how. A write that fails has written half of its bytes.
+/// Failure of a disk: the operation that fails, counted from 0, and the error it gives. A write that fails
+/// has written half of its bytes.
 #[derive(Debug)]
 pub struct Faults {
     first: usize,
@@ -31,19 +33,19 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// The operation `first` fails.
+    /// Lets the operation number `first` fail.
     #[must_use]
     pub fn new(first: usize, refusal: Refusal, lasts: Lasts) -> Self {
         Self { first, refusal, lasts, asked: AtomicUsize::new(0) }
     }
 
-    /// No operation fails, they are only counted.
+    /// Lets no operation fail; operations are only counted.
     #[must_use]
     pub fn none() -> Self {
         Self::new(usize::MAX, Refusal::Device, Lasts::Once)
     }
 
-    /// Operations asked for so far, failed ones included.
+    /// Returns the number of operations so far, including failed ones.
     #[must_use]
     pub fn asked(&self) -> usize {
         self.asked.load(Ordering::Relaxed)
@@ -71,7 +73,7 @@ mod tests {
     use super::{Faults, Lasts, Refusal};
     use std::io::ErrorKind;
 
-    /// What of writes of ten bytes each is allowed, and how it is refused.
+    /// Returns the number of bytes written and the error of each of four writes of ten bytes.
     fn writes(faults: &Faults) -> Vec<(usize, Option<ErrorKind>)> {
         (0..4)
             .map(|_| faults.next(10))

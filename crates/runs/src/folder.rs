@@ -1,4 +1,4 @@
-//! The folder of a run.
+//! Folder of a run.
 
 use crate::atomic;
 use crate::disk::Disk;
@@ -13,60 +13,61 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Folder of the checkpoints; a finished run has none.
+/// Subfolder of the checkpoints; a finished run has none.
 const CHECKPOINTS: &str = "checkpoints";
 
-/// Where run folders go unless another place is named, from the current folder.
+/// Returns the default folder for runs, relative to the current folder.
 #[must_use]
 pub fn default_root() -> PathBuf {
     PathBuf::from("reports/runs")
 }
 
-/// The folder of one run.
+/// Folder of one run.
 #[derive(Debug, Clone)]
 pub struct RunFolder {
     path: PathBuf,
     disk: Disk,
-    /// Held by whoever made or resumed the run, and by the copies of its folder.
+    /// Lock held by the process that created or resumed the run; copies of this value share it.
     _lock: Option<Arc<Lock>>,
 }
 
-/// The texts of a finished run that a report is made of.
+/// Texts of a finished run from which a report is made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texts {
-    /// The folder's own name.
+    /// Name of the folder.
     pub name: String,
-    /// `config.toml`; of a diagnosis `repaired.toml`.
+    /// `config.toml`; for a diagnosis `repaired.toml`.
     pub config: String,
-    /// `result.json`; of a diagnosis `diagnosis.json`.
+    /// `result.json`; for a diagnosis `diagnosis.json`.
     pub result: String,
-    /// `trace.csv`; empty where nothing was trained.
+    /// `trace.csv`; empty if nothing was trained.
     pub trace: String,
-    /// `envelope.csv`; empty where a run has more than one envelope.
+    /// `envelope.csv`; empty if the run has more than one envelope.
     pub envelope: String,
-    /// `predictions.csv`; empty where nothing was predicted.
+    /// `predictions.csv`; empty if nothing was predicted.
     pub predictions: String,
-    /// `series.csv`; empty but for a diagnosis.
+    /// `series.csv`; empty except for a diagnosis.
     pub series: String,
     /// `environment.json`.
     pub environment: String,
 }
 
 impl RunFolder {
-    /// Makes a new folder `<root>/<name>-<UTC time>-<short random>`, and locks it as long as this or a copy lives.
+    /// Creates a new folder `<root>/<name>-<UTC time>-<short random>` and locks it until this value and its
+    /// copies are dropped.
     ///
-    /// Characters of `name` that a file name should not have become `-`.
+    /// Characters of `name` that are not allowed in file names are replaced by `-`.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn create(root: &Path, name: &str) -> Result<Self, RunError> {
         Self::create_on(&Disk::default(), root, name)
     }
 
-    /// As [`RunFolder::create`], on a given disk.
+    /// Creates a folder as [`RunFolder::create`] does, on the given disk.
     ///
     /// # Errors
-    /// As [`RunFolder::create`].
+    /// Same as [`RunFolder::create`].
     pub fn create_on(disk: &Disk, root: &Path, name: &str) -> Result<Self, RunError> {
         disk.make_folders(root).map_err(RunError::io(root, "create"))?;
         let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' };
@@ -80,39 +81,40 @@ impl RunFolder {
         Self::locked(disk, path)
     }
 
-    /// Makes exactly this folder, or takes it where it is there and empty, and locks it as long as this or a copy
-    /// lives.
+    /// Creates a folder at exactly this path, or takes an existing empty folder, and locks it until this
+    /// value and its copies are dropped.
     ///
     /// # Errors
-    /// [`RunError::Occupied`] where it holds something; [`RunError::Locked`] where another program works in it;
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Occupied`] if the folder is not empty; [`RunError::Locked`] if another program works in
+    /// it; [`RunError::Io`] if the operating system refuses.
     pub fn create_at(path: &Path) -> Result<Self, RunError> {
         Self::create_at_on(&Disk::default(), path)
     }
 
-    /// As [`RunFolder::create_at`], on a given disk.
+    /// Creates a folder as [`RunFolder::create_at`] does, on the given disk.
     ///
     /// # Errors
-    /// As [`RunFolder::create_at`].
+    /// Same as [`RunFolder::create_at`].
     pub fn create_at_on(disk: &Disk, path: &Path) -> Result<Self, RunError> {
         disk.make_folders(path).map_err(RunError::io(path, "create"))?;
         Self::check_free(path)?;
         let folder = Self::locked(disk, path.to_owned())?;
-        // Another program may have come and gone between the two lines above.
+        // Another program may have worked in the folder between the two lines above.
         if is_empty(path)? { Ok(folder) } else { Err(RunError::Occupied { path: path.to_owned() }) }
     }
 
-    /// Takes the folder of a run that was begun, to go on with it, or makes it where there is none; locks it as long
-    /// as this or a copy lives, and takes away what a killed program was about to write.
+    /// Opens the folder of an unfinished run to resume it, or creates the folder if there is none. Locks it
+    /// until this value and its copies are dropped, and removes the temporary files of a killed program.
     ///
     /// # Errors
-    /// [`RunError::Locked`] where another program works in it; [`RunError::Io`] where the system refuses.
+    /// [`RunError::Locked`] if another program works in the folder; [`RunError::Io`] if the operating system
+    /// refuses.
     pub fn resume_on(disk: &Disk, path: &Path) -> Result<Self, RunError> {
         disk.make_folders(path).map_err(RunError::io(path, "create"))?;
         Self::locked(disk, path.to_owned())?.cleaned()
     }
 
-    /// Takes away what a killed program was about to write; the folder is this process's own.
+    /// Removes the temporary files of a killed program. The caller must hold the folder's lock.
     fn cleaned(self) -> Result<Self, RunError> {
         for place in [self.path.clone(), self.path.join(CHECKPOINTS), self.path.join("model")] {
             remove_temporary(&self.disk, &place)?;
@@ -120,12 +122,13 @@ impl RunFolder {
         Ok(self)
     }
 
-    /// Makes this folder, or takes it as it is, and locks it as long as this or a copy lives; `None` where another
-    /// program works in it. Of several programs that share the cases of one folder, each takes those that it can
-    /// claim; what a killed one had claimed is free, and what it was about to write is taken away.
+    /// Creates this folder, or takes it as it is, and locks it until this value and its copies are dropped;
+    /// returns `None` if another program works in it. If several programs share the cases of one folder, each
+    /// takes those that it can claim. The claim of a killed program is free again, and its temporary files
+    /// are removed.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn claim(path: &Path) -> Result<Option<Self>, RunError> {
         let disk = Disk::default();
         disk.make_folders(path).map_err(RunError::io(path, "create"))?;
@@ -134,10 +137,10 @@ impl RunFolder {
             .transpose()
     }
 
-    /// As [`RunFolder::claim`], once whoever works in the folder lets go.
+    /// Claims a folder as [`RunFolder::claim`] does, but waits until no other program works in it.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn wait(path: &Path) -> Result<Self, RunError> {
         let disk = Disk::default();
         disk.make_folders(path).map_err(RunError::io(path, "create"))?;
@@ -150,11 +153,11 @@ impl RunFolder {
         Ok(Self { path, disk: disk.clone(), _lock: Some(Arc::new(lock)) })
     }
 
-    /// Whether [`RunFolder::create_at`] would take this folder, before there is anything to put in it.
+    /// Checks that [`RunFolder::create_at`] would accept this folder, before there is anything to write.
     ///
     /// # Errors
-    /// [`RunError::Occupied`] where it holds something; [`RunError::Locked`] where another program works in it;
-    /// [`RunError::Io`] where it is no folder.
+    /// [`RunError::Occupied`] if the folder is not empty; [`RunError::Locked`] if another program works in
+    /// it; [`RunError::Io`] if it is not a folder.
     pub fn check_free(path: &Path) -> Result<(), RunError> {
         if !path.exists() {
             return Ok(());
@@ -163,36 +166,36 @@ impl RunFolder {
         if is_empty(path)? { Ok(()) } else { Err(RunError::Occupied { path: path.to_owned() }) }
     }
 
-    /// A folder that is there already, not locked.
+    /// Opens an existing folder without locking it.
     #[must_use]
     pub fn open(path: &Path) -> Self {
         Self { path: path.to_owned(), disk: Disk::default(), _lock: None }
     }
 
-    /// Its path.
+    /// Returns the path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes a file of the run; `name` may lead into a subfolder, as `model/weights.safetensors`.
+    /// Writes a file of the run; `name` may contain a subfolder, as in `model/weights.safetensors`.
     ///
     /// # Errors
-    /// [`RunError::Io`] with the file and what was tried.
+    /// [`RunError::Io`] with the file and the operation that failed.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
         atomic::write(&self.disk, &self.place(name)?, content)
     }
 
-    /// As [`RunFolder::write`], for one of very many files that a seed gives again: whole or absent after a crash
-    /// of the program, but not flushed to the disk.
+    /// Writes a file as [`RunFolder::write`] does, without flushing it to disk: after a crash of the program
+    /// it is whole or absent. Meant for very many files that a seed can reproduce.
     ///
     /// # Errors
-    /// As [`RunFolder::write`].
+    /// Same as [`RunFolder::write`].
     pub fn write_reproducible(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
         atomic::write_unflushed(&self.disk, &self.place(name)?, content)
     }
 
-    /// The path of a file of the run, its subfolder made.
+    /// Returns the path of a file of the run, and creates its subfolder.
     fn place(&self, name: &str) -> Result<PathBuf, RunError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent() {
@@ -201,20 +204,22 @@ impl RunFolder {
         Ok(path)
     }
 
-    /// Writes a value as a JSON file, indented, ending in a line break.
+    /// Writes a value as a JSON file, indented, with a line break at the end.
     ///
     /// # Errors
-    /// As [`RunFolder::write`]; [`RunError::Encoding`] where the value has no JSON.
+    /// Same as [`RunFolder::write`]; [`RunError::Encoding`] if the value has no JSON form.
     pub fn write_json(&self, name: &str, value: &impl Serialize) -> Result<(), RunError> {
         self.write(name, to_json(name, value)?.as_bytes())
     }
 
-    /// Adds a line to `events.jsonl`: the time, the event's name, and what belongs to it.
+    /// Appends an event to `events.jsonl`: the time, the event's name, and its data.
     ///
-    /// One write of one line, flushed to the disk; a crash can cut the last line short, never an earlier one.
+    /// The line is written at once and flushed to disk; a crash can cut the last line short, never an earlier
+    /// one.
     ///
     /// # Errors
-    /// As [`RunFolder::write_json`]; [`RunError::Log`] where the lines before are not what was written.
+    /// Same as [`RunFolder::write_json`]; [`RunError::Log`] if the earlier lines differ from what was
+    /// written.
     pub fn record_event(&self, event: &str, details: &impl Serialize) -> Result<(), RunError> {
         let details = serde_json::to_value(details)
             .map_err(|error| RunError::Encoding { name: EVENTS.to_owned(), problem: error.to_string() })?;
@@ -222,18 +227,18 @@ impl RunFolder {
         EventLog::append(&self.path.join(EVENTS), &self.disk, &event)
     }
 
-    /// What happened so far; nothing where there is no log.
+    /// Reads the events so far; empty if there is no log.
     ///
     /// # Errors
-    /// [`RunError::Log`] where a line is not what was written; [`RunError::Io`] where it cannot be read.
+    /// [`RunError::Log`] if a line differs from what was written; [`RunError::Io`] if the log cannot be read.
     pub fn events(&self) -> Result<EventLog, RunError> {
         EventLog::read(&self.path.join(EVENTS))
     }
 
-    /// Whether the folder holds no more than some of these files, and a lock.
+    /// Returns `true` if the folder holds no file other than the expected ones and a lock.
     ///
     /// # Errors
-    /// [`RunError::Io`] where it cannot be listed.
+    /// [`RunError::Io`] if the folder cannot be listed.
     pub fn holds_only(&self, expected: &[&str]) -> Result<bool, RunError> {
         Ok(names(&self.path)?.iter().all(|name| name == LOCK || expected.contains(&name.as_str())))
     }
@@ -247,18 +252,19 @@ impl RunFolder {
         std::fs::read(&path).map_err(RunError::io(&path, "read"))
     }
 
-    /// Writes a checkpoint, as [`RunFolder::write`] any file, under its digest.
+    /// Writes a checkpoint atomically, as [`RunFolder::write`] does, with its digest.
     ///
     /// # Errors
-    /// As [`RunFolder::write`].
+    /// Same as [`RunFolder::write`].
     pub fn write_checkpoint(&self, name: &str, bytes: &[u8]) -> Result<(), RunError> {
         sealed::write(&self.disk, &self.place(&format!("{CHECKPOINTS}/{name}"))?, bytes)
     }
 
-    /// The checkpoint of a name; `None` where there is none.
+    /// Reads the checkpoint with the given name; `None` if there is none.
     ///
     /// # Errors
-    /// [`RunError::Damaged`] where it is not what was written; [`RunError::Io`] where it cannot be read.
+    /// [`RunError::Damaged`] if the checkpoint differs from what was written; [`RunError::Io`] if it cannot
+    /// be read.
     pub fn read_checkpoint(&self, name: &str) -> Result<Option<Vec<u8>>, RunError> {
         match sealed::read(&self.checkpoint_path(name)) {
             Err(RunError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => Ok(None),
@@ -266,24 +272,24 @@ impl RunFolder {
         }
     }
 
-    /// Where the checkpoint of a name is kept.
+    /// Returns the path of the checkpoint with the given name.
     #[must_use]
     pub fn checkpoint_path(&self, name: &str) -> PathBuf {
         self.path.join(CHECKPOINTS).join(name)
     }
 
-    /// Names of the checkpoints there are, sorted.
+    /// Returns the names of the existing checkpoints, sorted.
     ///
     /// # Errors
-    /// [`RunError::Io`] where they cannot be listed.
+    /// [`RunError::Io`] if they cannot be listed.
     pub fn checkpoints(&self) -> Result<Vec<String>, RunError> {
         names(&self.path.join(CHECKPOINTS))
     }
 
-    /// Takes a file of the run away that another one supersedes; one that is not there is no error.
+    /// Deletes a file of the run that another file supersedes; a missing file is not an error.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn remove(&self, name: &str) -> Result<(), RunError> {
         let path = self.path.join(name);
         if !path.exists() {
@@ -292,10 +298,10 @@ impl RunFolder {
         self.disk.remove_file(&path).map_err(RunError::io(&path, "take away"))
     }
 
-    /// Takes all checkpoints away: the run is finished.
+    /// Deletes all checkpoints of a finished run.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn remove_checkpoints(&self) -> Result<(), RunError> {
         let path = self.path.join(CHECKPOINTS);
         if !path.exists() {
@@ -304,15 +310,15 @@ impl RunFolder {
         self.disk.remove_folder(&path).map_err(RunError::io(&path, "take away"))
     }
 
-    /// When the run began and when it last recorded an event, in milliseconds since 1970, from `events.jsonl`.
+    /// Returns the times of the first and the last event in `events.jsonl`, in milliseconds since 1970.
     ///
     /// # Errors
-    /// [`RunError::Io`] where there is no such file; [`RunError::Encoding`] where it tells no time.
+    /// [`RunError::Io`] if there is no such file; [`RunError::Encoding`] if it contains no time.
     pub fn span_ms(&self) -> Result<(i64, i64), RunError> {
         let bytes = self.read(EVENTS)?;
         let time = |event: Event| Some(event.time.parse::<Timestamp>().ok()?.as_millisecond());
         let mut times = readable(&bytes).filter_map(time);
-        // Of a log with one line its first is its last.
+        // In a log with one line, the first event is also the last.
         let first = times.next();
         first.map(|first| (first, times.next_back().unwrap_or(first))).ok_or_else(|| RunError::Encoding {
             name: EVENTS.to_owned(),
@@ -320,8 +326,8 @@ impl RunFolder {
         })
     }
 
-    /// Reads what a report is made of. The tables may be absent: which of them a run has is its task's
-    /// affair. A table of runs that no sweep made has neither a configuration nor an environment.
+    /// Reads the texts from which a report is made. Tables may be missing: which of them a run has depends on
+    /// its task. A table of runs that no sweep made has neither a configuration nor an environment.
     ///
     /// # Errors
     /// [`RunError::Io`] with the file that is missing.
@@ -334,7 +340,7 @@ impl RunFolder {
             Err(RunError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => Ok(String::new()),
             other => other,
         };
-        // `.` and `..` have a name only once resolved.
+        // `.` and `..` have a name only after resolution.
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let has = |name: &str| self.path.join(name).exists();
@@ -364,13 +370,13 @@ impl RunFolder {
     }
 }
 
-/// Whether a folder holds nothing but perhaps a lock.
+/// Returns `true` if a folder holds nothing except perhaps a lock.
 fn is_empty(path: &Path) -> Result<bool, RunError> {
     let mut entries = std::fs::read_dir(path).map_err(RunError::io(path, "list"))?;
     Ok(entries.all(|entry| entry.is_ok_and(|entry| entry.file_name() == LOCK)))
 }
 
-/// Takes away the temporary files of a folder in which no program is writing.
+/// Deletes the temporary files of a folder in which no program is writing.
 pub(crate) fn remove_temporary(disk: &Disk, folder: &Path) -> Result<(), RunError> {
     for name in names(folder)?.iter().filter(|name| name.starts_with(TEMPORARY)) {
         let path = folder.join(name);
@@ -379,7 +385,7 @@ pub(crate) fn remove_temporary(disk: &Disk, folder: &Path) -> Result<(), RunErro
     Ok(())
 }
 
-/// Names of what a folder holds, sorted; none where there is no such folder.
+/// Returns the names of the entries of a folder, sorted; empty if there is no such folder.
 fn names(path: &Path) -> Result<Vec<String>, RunError> {
     if !path.exists() {
         return Ok(Vec::new());
@@ -396,10 +402,11 @@ fn names(path: &Path) -> Result<Vec<String>, RunError> {
 #[cfg(test)]
 mod tests;
 
-/// A value as the text of a JSON file, indented, ending in a line break; `name` is what messages call the file.
+/// Encodes a value as the text of a JSON file, indented, with a line break at the end; `name` is the file's
+/// name in messages.
 ///
 /// # Errors
-/// [`RunError::Encoding`] where the value has no JSON.
+/// [`RunError::Encoding`] if the value has no JSON form.
 pub fn to_json(name: &str, value: &impl Serialize) -> Result<String, RunError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| RunError::Encoding { name: name.to_owned(), problem: error.to_string() })?;

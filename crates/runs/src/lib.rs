@@ -1,8 +1,9 @@
-//! Run folders: the only crate that writes to disk.
+//! Run folders. This is the only crate that writes to disk.
 //!
-//! Every file is written whole to a temporary name, flushed to the disk and renamed; a crash leaves the
-//! old file or the new one, never half of one. A folder is made once and never written over; one program at a
-//! time works in it, and one that was killed there can be followed by another that resumes.
+//! A file is written completely under a temporary name, flushed to disk (unless a seed can reproduce it) and
+//! renamed, so a crash leaves the old file or the new one, never half of one. Only the log of events grows in
+//! place. A folder is created once and never overwritten. Only one program at a time works in it; if that
+//! program is killed, another one can resume its run.
 
 #![cfg_attr(
     test,

@@ -1,7 +1,7 @@
-//! One program at a time in a run's folder.
+//! Lock of a run's folder: only one program at a time works in it.
 //!
-//! The lock is the system's own on an open file, so a program that is killed leaves none behind; what stands in
-//! the file only serves the message to others.
+//! The lock is the operating system's lock on an open file, so a killed program leaves none behind. The
+//! content of the file only serves the message to other programs.
 
 use crate::disk::Disk;
 use crate::error::RunError;
@@ -12,15 +12,15 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::Duration;
 
-/// Name of the file, hidden since nobody needs to read it.
+/// Name of the lock file, hidden because users do not need it.
 pub(crate) const LOCK: &str = ".lock";
 
-/// How often a lock is tried for, and the pause between. A program that is killed while it starts another leaves that one
-/// a copy of its open file, and so the lock, for the moments that this takes.
+/// Number of attempts to get a lock, and the pause between them. A program that is killed while it starts
+/// another process leaves that process a copy of its open file, and so the lock, for a few moments.
 const TRIES: u32 = 25;
 const PAUSE: Duration = Duration::from_millis(10);
 
-/// Who has the folder.
+/// Process that holds the folder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Holder {
     pid: u32,
@@ -28,16 +28,17 @@ pub(crate) struct Holder {
     since: String,
 }
 
-/// The lock, while it lives.
+/// Lock of a folder, held until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Lock {
     file: File,
 }
 
-/// Closing the file is not enough: a process that another thread is just about to start holds a copy of it.
+/// Unlocks explicitly. Closing the file is not enough: a process that another thread is about to start holds
+/// a copy of it.
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Where this fails the file is closed all the same.
+        // If this fails, the file is closed all the same.
         let _ = self.file.unlock();
     }
 }
@@ -46,7 +47,7 @@ impl Lock {
     /// Takes the lock of a folder.
     ///
     /// # Errors
-    /// [`RunError::Locked`] where another program has it, or this one already.
+    /// [`RunError::Locked`] if another program, or this one, already holds it.
     pub(crate) fn take(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(LOCK);
         let mut file = open(disk, &path)?;
@@ -62,10 +63,10 @@ impl Lock {
         Self::signed(disk, &path, file)
     }
 
-    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments.
+    /// Waits for the lock of a folder and takes it; for work that takes only moments.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub(crate) fn wait(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(LOCK);
         let file = open(disk, &path)?;
@@ -73,10 +74,11 @@ impl Lock {
         Self::signed(disk, &path, file)
     }
 
-    /// Takes the lock on a file, made where it is absent; `None` where another program has it, or this one already.
+    /// Takes the lock on a file, which is created if missing; `None` if another program, or this one, already
+    /// holds it.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub(crate) fn claim(disk: &Disk, path: &Path) -> Result<Option<Self>, RunError> {
         let file = open(disk, path)?;
         match file.try_lock() {
@@ -86,11 +88,11 @@ impl Lock {
         }
     }
 
-    /// Shares the lock on a file, made where it is absent, with others who share it. Who comes while nobody has it has it
-    /// alone first, and does `alone`.
+    /// Takes a shared lock on a file, which is created if missing. A process that finds the file unlocked
+    /// first runs `alone` under an exclusive lock.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses; what `alone` gives.
+    /// [`RunError::Io`] if the operating system refuses; the error of `alone`.
     pub(crate) fn share(
         disk: &Disk,
         path: &Path,
@@ -109,7 +111,7 @@ impl Lock {
         Ok(shared)
     }
 
-    /// The lock on a file, with its holder's name in it.
+    /// Writes the holder's name into a locked file.
     fn signed(disk: &Disk, path: &Path, mut file: File) -> Result<Self, RunError> {
         let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
         let text = serde_json::to_string(&holder)
@@ -119,14 +121,14 @@ impl Lock {
         Ok(Self { file })
     }
 
-    /// Whether nobody has the folder; it is left as it is.
+    /// Checks that no program holds the folder, without changing the folder.
     ///
     /// # Errors
-    /// As [`Lock::take`].
+    /// Same as [`Lock::take`].
     pub(crate) fn check(folder: &Path) -> Result<(), RunError> {
         match OpenOptions::new().read(true).write(true).open(folder.join(LOCK)) {
             Ok(mut file) => lock(&mut file, folder),
-            // A folder without such a file, or one that may only be read.
+            // There is no lock file, or the folder is read-only.
             Err(_) => Ok(()),
         }
     }
@@ -144,7 +146,7 @@ fn lock(file: &mut File, folder: &Path) -> Result<(), RunError> {
     }
 }
 
-/// Who has it; `None` where that has just been emptied.
+/// Reads the holder of the lock; `None` if the file has just been emptied.
 fn holder(file: &mut File) -> Option<Holder> {
     let mut text = String::new();
     file.seek(SeekFrom::Start(0)).ok()?;
@@ -162,7 +164,7 @@ impl RunError {
     }
 }
 
-/// The machine's name, where the system tells.
+/// Returns the name of this machine, if the system provides one.
 fn host() -> String {
     ["/proc/sys/kernel/hostname", "/etc/hostname"]
         .iter()
@@ -243,7 +245,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(LOCK), "process 1 for ever, ".repeat(100)).unwrap();
         let lock = Lock::take(&Disk::default(), folder.path()).unwrap();
-        // Nothing of it is left behind the new holder's name.
+        // No part of the old content remains after the new holder's name.
         let message = Lock::check(folder.path()).unwrap_err().to_string();
         assert!(message.contains(&format!("process {} on ", std::process::id())), "{message}");
         std::fs::write(folder.path().join(LOCK), "").unwrap();

@@ -1,25 +1,25 @@
-//! A folder for what is thrown away.
+//! Temporary folder.
 
 use crate::error::RunError;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A folder in the system's place for temporary files, gone with all that is in it when this is dropped.
+/// Folder in the system's place for temporary files; deleted with all its content when this value is dropped.
 #[derive(Debug)]
 pub struct Scratch(TempDir);
 
 impl Scratch {
-    /// A new one.
+    /// Creates a temporary folder.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn new() -> Result<Self, RunError> {
         let place = std::env::temp_dir();
         let refused = RunError::io(&place, "create a folder in");
         tempfile::Builder::new().prefix("ringdown-").tempdir().map(Self).map_err(refused)
     }
 
-    /// Where it is.
+    /// Returns the path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.0.path()

@@ -1,4 +1,4 @@
-//! Files that are wanted whole or not at all: bytes behind a name, their length and their digest.
+//! Sealed files, read whole or not at all: a first line, the digest of the bytes, and the bytes.
 
 use crate::atomic;
 use crate::disk::Disk;
@@ -9,15 +9,15 @@ use std::path::Path;
 /// First line of a sealed file.
 const MARK: &[u8] = b"ringdown.checkpoint/1\n";
 
-/// Length of a SHA-256.
+/// Length of a SHA-256 digest, in bytes.
 const DIGEST: usize = 32;
 
-/// Writes bytes under their digest, as [`atomic::write`] writes any file.
+/// Writes bytes atomically, as [`atomic::write`] does, with their digest.
 pub(crate) fn write(disk: &Disk, path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     atomic::write(disk, path, &seal(bytes))
 }
 
-/// Reads what [`write`] wrote.
+/// Reads and verifies a file that [`write`] wrote.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, RunError> {
     let content = std::fs::read(path).map_err(RunError::io(path, "read"))?;
     open(&content).map_err(|problem| RunError::Damaged { path: path.to_owned(), problem })

@@ -1,19 +1,19 @@
-//! The folder of a sweep.
+//! Folder of a sweep.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `sweep.json` | the frozen list of runs ([`SweepManifest`]); what became of each, as of its last writing |
+//! | `sweep.json` | the frozen list of runs ([`SweepManifest`]), with their states when it was written |
 //! | `configs/NNNN.toml` | each run's resolved configuration |
-//! | `config.toml`, `environment.json` | the configuration that every run starts from; what it was frozen with |
-//! | `state/<digest>.json` | one file for each run that came to its end ([`SweepEnd`]) |
-//! | `state/<digest>.lock` | who makes the run; the system's lock on it is what counts |
+//! | `config.toml`, `environment.json` | the configuration all runs start from; the environment of freezing |
+//! | `state/<digest>.json` | one file for each run that has ended ([`SweepEnd`]) |
+//! | `state/<digest>.lock` | the process that makes the run; only the system's lock on the file counts |
 //! | `state/.lock` | shared by the processes that work on the sweep |
 //! | `runs/NNNN-…/` | ordinary run folders |
 //!
-//! Every file is whole or absent, and `sweep.json` comes last when a sweep is frozen, so a crash leaves a sweep that
-//! was not begun or one that goes on where it was. A run that was killed goes on in its folder; one that
-//! failed is made again in another one. Several processes may work on one sweep: each makes the runs that it can claim
-//! ([`SweepFolder::claim`]), and only the files of `state/` say what is done.
+//! Every file is whole or absent, and `sweep.json` is written last when a sweep is frozen, so a crash leaves
+//! either a sweep that was not begun or one that can be resumed. A killed run is resumed in its folder; a
+//! failed run is made again in a new folder. Several processes may work on one sweep: each makes the runs
+//! that it can claim ([`SweepFolder::claim`]), and only the files in `state/` say which runs are done.
 
 use crate::atomic;
 use crate::disk::Disk;
@@ -28,74 +28,76 @@ use thiserror::Error;
 
 /// Name of the manifest.
 const MANIFEST: &str = "sweep.json";
-/// Folder of the runs' configurations; its lock is that of freezing.
+/// Folder of the runs' configurations; its lock is held while the sweep is frozen.
 const CONFIGS: &str = "configs";
 const STATE: &str = "state";
 const RUNS: &str = "runs";
-/// Most folders that one run is tried in.
+/// Maximum number of folders in which one run is attempted.
 const MOST_ATTEMPTS: u32 = 10_000;
 
-/// Why a sweep's folder cannot be used.
+/// Reason why a sweep's folder cannot be used.
 #[derive(Debug, Error)]
 pub enum SweepFolderError {
-    /// The system refused, or the folder holds something else.
+    /// The operating system refused, or the folder is in use for something else.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The manifest is not one.
+    /// The file is not a sweep manifest.
     #[error(
         "{}: cannot be read as a sweep's manifest: {problem}; restore it, or begin the sweep in another folder",
         path.display()
     )]
     Unreadable {
-        /// The manifest.
+        /// Path of the manifest.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Fault that was found in it.
         problem: String,
     },
 }
 
-/// A run in this process's hands, or its place among those who work on a sweep, until this is dropped or the process ends,
-/// however it ends.
+/// Claim of this process on a run, or its membership in the processes that work on a sweep. It ends when this
+/// value is dropped or the process ends, however it ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: Lock,
 }
 
-/// The folder of a sweep.
+/// Folder of a sweep.
 #[derive(Debug, Clone)]
 pub struct SweepFolder {
     folder: RunFolder,
 }
 
 impl SweepFolder {
-    /// A folder that is there already.
+    /// Opens an existing folder.
     #[must_use]
     pub fn open(path: &Path) -> Self {
         Self { folder: RunFolder::open(path) }
     }
 
-    /// Whether a folder holds a sweep that was frozen.
+    /// Returns `true` if a folder holds a frozen sweep.
     #[must_use]
     pub fn is_one(path: &Path) -> bool {
         path.join(MANIFEST).is_file()
     }
 
-    /// The folder for what belongs to the sweep as a whole.
+    /// Returns the folder for the files of the sweep as a whole.
     #[must_use]
     pub fn folder(&self) -> &RunFolder {
         &self.folder
     }
 
-    /// Its path.
+    /// Returns the path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// The frozen list, with what `state/` says became of each run; `None` where nothing was frozen yet.
+    /// Reads the frozen list, with the state of each run from `state/`; `None` if nothing has been frozen
+    /// yet.
     ///
     /// # Errors
-    /// [`SweepFolderError::Unreadable`] where the manifest is none; [`RunError::Io`] where the system refuses.
+    /// [`SweepFolderError::Unreadable`] if the file is not a manifest; [`RunError::Io`] if the operating
+    /// system refuses.
     pub fn manifest(&self) -> Result<Option<SweepManifest>, SweepFolderError> {
         let path = self.path().join(MANIFEST);
         let text = match std::fs::read_to_string(&path) {
@@ -113,13 +115,15 @@ impl SweepFolder {
         Ok(Some(manifest))
     }
 
-    /// Freezes the list of runs; `configs` are the texts of the runs' configurations, in the list's order, and `beside`
-    /// the files of the sweep as a whole by name. The manifest comes last: where it is, all of these are.
+    /// Freezes the list of runs. `configs` holds the texts of the runs' configurations, in the list's order,
+    /// and `beside` the files of the sweep as a whole by name. The manifest is written last: if it exists, so
+    /// do all the others.
     ///
-    /// `false`, and nothing written, where another process has frozen one meanwhile; who is at it is waited for.
+    /// Waits for another process that is freezing the sweep. Returns `false`, and writes nothing, if another
+    /// process has frozen one.
     ///
     /// # Errors
-    /// [`RunError`] where something cannot be written.
+    /// [`RunError`] if something cannot be written.
     pub fn freeze(
         &self,
         manifest: &SweepManifest,
@@ -133,7 +137,7 @@ impl SweepFolder {
             return Ok(false);
         }
         for (line, config) in manifest.runs.iter().zip(configs) {
-            // Flushing ten thousand files takes minutes; the digests in the manifest tell whether one was lost.
+            // Flushing ten thousand files takes minutes; the digests in the manifest reveal a lost one.
             self.folder.write_reproducible(&line.config, config.as_bytes())?;
         }
         for (name, content) in beside {
@@ -143,12 +147,14 @@ impl SweepFolder {
         atomic::write_new(&Disk::default(), &path, &text_of(manifest)?)
     }
 
-    /// Adds runs to a frozen list, whose configurations come first: where the manifest names a run, its file is there.
+    /// Adds runs to a frozen list. Their configurations are written first: if the manifest names a run, its
+    /// configuration exists.
     ///
-    /// Who extends a list holds it ([`claim`](Self::claim) under a name of its own), so that no other process does too.
+    /// The caller must hold the list ([`claim`](Self::claim) under a name of its own), so that no other
+    /// process extends it at the same time.
     ///
     /// # Errors
-    /// [`RunError`] where something cannot be written.
+    /// [`RunError`] if something cannot be written.
     pub fn extend(
         &self,
         manifest: &mut SweepManifest,
@@ -162,11 +168,12 @@ impl SweepFolder {
         self.refresh(manifest)
     }
 
-    /// Says that this process works on the sweep, until what is returned is dropped or the process ends, however it ends.
-    /// Where no other process does, files that killed ones were about to write are taken away.
+    /// Registers this process as working on the sweep until the returned claim is dropped or the process
+    /// ends, however it ends. If no other process works on it, the temporary files of killed processes are
+    /// removed.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn enter(&self) -> Result<Claim, RunError> {
         let disk = Disk::default();
         let (configs, state) = (self.path().join(CONFIGS), self.path().join(STATE));
@@ -176,10 +183,10 @@ impl SweepFolder {
         Ok(Claim { _lock: Lock::share(&disk, &state.join(LOCK), clean)? })
     }
 
-    /// Takes a run into this process's hands; `None` where another one has it.
+    /// Claims a run for this process; `None` if another process has claimed it.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn claim(&self, digest: &str) -> Result<Option<Claim>, RunError> {
         let place = self.path().join(STATE);
         Disk::default().make_folders(&place).map_err(RunError::io(&place, "create"))?;
@@ -187,18 +194,18 @@ impl SweepFolder {
         Ok(Lock::claim(&Disk::default(), &path)?.map(|lock| Claim { _lock: lock }))
     }
 
-    /// What became of a run by now; `None` where it came to no end, or where its file cannot be read.
+    /// Returns the end of a run; `None` if it has not ended or its file cannot be read.
     #[must_use]
     pub fn end_of(&self, digest: &str) -> Option<SweepEnd> {
         let bytes = std::fs::read(self.path().join(STATE).join(state_name(digest))).ok()?;
         serde_json::from_slice(&bytes).ok().filter(|end: &SweepEnd| end.digest == digest)
     }
 
-    /// A new folder for a run, locked as long as it lives: `runs/<label>`, or with a number behind it where that was
-    /// begun before. The path is from the sweep's folder.
+    /// Creates a new folder for a run, locked until it is dropped: `runs/<label>`, with a number appended if
+    /// that run was begun before. Returns its path relative to the sweep's folder, and the folder.
     ///
     /// # Errors
-    /// [`RunError::Io`] where the system refuses.
+    /// [`RunError::Io`] if the operating system refuses.
     pub fn begin_run(&self, label: &str) -> Result<(String, RunFolder), RunError> {
         let root = self.path().join(RUNS);
         std::fs::create_dir_all(&root).map_err(RunError::io(&root, "create"))?;
@@ -218,26 +225,27 @@ impl SweepFolder {
         Err(RunError::Occupied { path: root.join(label) })
     }
 
-    /// The folder, from the sweep's, that a run of this label was begun in last; `None` where it never was.
+    /// Returns the folder in which a run with this label was last begun, relative to the sweep's folder;
+    /// `None` if it was never begun.
     #[must_use]
     pub fn last_begun(&self, label: &str) -> Option<String> {
         let names = (1..MOST_ATTEMPTS).map(|attempt| format!("{RUNS}/{}", attempt_name(label, attempt)));
         names.take_while(|name| self.path().join(name).is_dir()).last()
     }
 
-    /// Says what became of a run: one small file, there as a whole or not at all.
+    /// Records the end of a run in one small file, written atomically.
     ///
     /// # Errors
-    /// [`RunError`] where it cannot be written.
+    /// [`RunError`] if the file cannot be written.
     pub fn end_run(&self, end: &SweepEnd) -> Result<(), RunError> {
         self.folder.write_json(&format!("{STATE}/{}", state_name(&end.digest)), end)
     }
 
-    /// Writes `sweep.json` again with what `state/` says, until nothing has changed meanwhile: whoever of several
-    /// processes comes last leaves it complete.
+    /// Writes `sweep.json` again with the states from `state/`, until no state has changed during the write:
+    /// the last of several processes leaves it complete.
     ///
     /// # Errors
-    /// [`RunError`] where something cannot be read or written.
+    /// [`RunError`] if something cannot be read or written.
     pub fn refresh(&self, manifest: &mut SweepManifest) -> Result<(), RunError> {
         loop {
             self.note(manifest)?;
@@ -250,7 +258,7 @@ impl SweepFolder {
         }
     }
 
-    /// Brings the states of a manifest up to date. A state file that cannot be read counts as none: its run is made
+    /// Updates the states of a manifest. A state file that cannot be read counts as missing: its run is made
     /// again.
     fn note(&self, manifest: &mut SweepManifest) -> Result<(), RunError> {
         let mut ends = self.ends()?;
@@ -278,7 +286,7 @@ impl SweepFolder {
     }
 }
 
-/// What the folder of an attempt at a run is called.
+/// Returns the folder name of an attempt at a run.
 fn attempt_name(label: &str, attempt: u32) -> String {
     if attempt == 1 { label.to_owned() } else { format!("{label}-{attempt}") }
 }
@@ -287,7 +295,7 @@ fn state_name(digest: &str) -> String {
     format!("{}.json", plain(digest))
 }
 
-/// A digest without the name of its kind.
+/// Returns a digest without its prefix `sha256:`.
 fn plain(digest: &str) -> &str {
     digest.strip_prefix("sha256:").unwrap_or(digest)
 }
@@ -360,7 +368,7 @@ mod tests {
         assert!(!root.path().join("configs/0003.toml").exists() && !root.path().join("config.toml").exists());
     }
 
-    /// Whose manifest stands, that one's files stand beside it, all of them.
+    /// The files that belong to the manifest are all those of the process that wrote the manifest.
     #[test]
     fn of_several_that_freeze_at_once_one_does_and_nothing_is_of_another() {
         for _ in 0..10 {
@@ -393,14 +401,14 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let sweep = frozen(root.path(), 3);
         sweep.end_run(&done(2, "runs/x")).unwrap();
-        // The manifest was not written since: its state is not asked.
+        // The manifest has not been written since, so the state is read from `state/`.
         let mut read = sweep.manifest().unwrap().unwrap();
         let states = |manifest: &SweepManifest| -> Vec<&str> {
             manifest.runs.iter().map(|line| line.state.name()).collect()
         };
         assert_eq!(states(&read), ["pending", "done", "pending"]);
         assert_eq!(read.runs[1].run.as_deref(), Some("runs/x"));
-        // Another process finishes a run; whoever refreshes next knows.
+        // Another process finishes a run; the next refresh by any process sees it.
         sweep.end_run(&done(3, "runs/y")).unwrap();
         sweep.refresh(&mut read).unwrap();
         let text = std::fs::read_to_string(root.path().join("sweep.json")).unwrap();
@@ -446,14 +454,14 @@ mod tests {
         assert!(matches!(resumed, Err(RunError::Locked { .. })));
         drop((claim, folder));
         assert!(sweep.claim(&digest).unwrap().is_some());
-        // A lock beside the states is none of them.
+        // A lock file beside the state files does not count as a state.
         assert_eq!(sweep.end_of(&digest), None);
         assert_eq!(sweep.manifest().unwrap().unwrap().runs[0].state, SweepState::Pending);
         sweep.end_run(&done(1, &name)).unwrap();
         assert_eq!(sweep.end_of(&digest), Some(done(1, &name)));
     }
 
-    /// A live process may be writing: only who comes to an empty room cleans it.
+    /// Another live process may be writing, so only the first process to enter removes temporary files.
     #[test]
     fn what_killed_processes_were_writing_is_taken_away_when_none_is_left() {
         let root = tempfile::tempdir().unwrap();

@@ -2,25 +2,27 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Estimates of one quantity held against their weighted mean.
+/// Comparison of estimates of one quantity with their weighted mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
     /// Mean, weighted by the inverse squared standard errors.
     pub mean: f64,
-    /// Its standard error, if the estimates are of one quantity.
+    /// Standard error of the mean, if all estimates are of one quantity.
     pub std_error: f64,
     /// Cochran's Q: squared distances from the mean over squared standard errors, summed.
     pub chi_squared: f64,
-    /// Degrees of freedom of Q: one less than the estimates.
+    /// Degrees of freedom of Q: one less than the number of estimates.
     pub degrees: usize,
-    /// Probability of a Q as large or larger where the estimates are of one quantity and their errors are normal.
+    /// Probability of a Q at least this large if the estimates are of one quantity and their errors are
+    /// normal.
     pub p_value: f64,
-    /// Places of the two estimates that are farthest apart in standard errors of their difference, and that distance.
+    /// Indices of the two estimates that are farthest apart in standard errors of their difference, and that
+    /// distance.
     pub farthest: (usize, usize, f64),
 }
 
-/// Agreement of estimates, each a value with its standard error. `None` for fewer than two, or where a value is not finite
-/// or a standard error not above zero.
+/// Compares estimates of one quantity, each a value with its standard error. `None` for fewer than two
+/// estimates, or if a value is not finite or a standard error is not finite and above zero.
 ///
 /// Source: W. G. Cochran, The combination of estimates from different experiments, Biometrics 10 (1954).
 #[must_use]
@@ -60,7 +62,8 @@ mod tests {
         assert!((found.std_error - 600f64.powf(-0.5)).abs() < 1e-15);
     }
 
-    /// Two estimates three and four errors of a difference of five apart: Q is one squared distance.
+    /// Two estimates with errors of 3 and 4 have a difference with an error of 5; for two estimates, Q is one
+    /// squared distance.
     #[test]
     fn the_two_that_are_farthest_apart_are_told() {
         let found = agreement(&[(0.0, 3.0), (1.0, 3.0), (25.0, 4.0)]).unwrap();

@@ -1,10 +1,11 @@
-//! What chance alone would give: intervals of shares, and tests of "better more often than not".
+//! Statistics of chance: intervals of shares, and tests of "better more often than not".
 
 use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF, StudentsT};
 
-/// The 95 % interval of a share by Clopper and Pearson: `successes` of `trials` independent trials.
+/// Returns the 95 % interval of a share by Clopper and Pearson, from `successes` of `trials` independent
+/// trials.
 ///
-/// Both may be fractions of trials, as an effective number of trials is. `[0, 1]` for no trials.
+/// Both may be fractional, as an effective number of trials is. `[0, 1]` for no trials.
 ///
 /// # Reference
 /// C. J. Clopper, E. S. Pearson, Biometrika 26 (1934) 404–413.
@@ -12,18 +13,21 @@ use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF, StudentsT
 pub fn binomial_interval(successes: f64, trials: f64) -> [f64; 2] {
     let failures = trials - successes;
     let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).map(|beta| beta.inverse_cdf(p)).ok();
-    // No successes leave no distribution for the lower end, which is 0 then; likewise 1 for the upper.
+    // Without successes the lower quantile has no distribution, and the lower end is 0; likewise 1 for the
+    // upper end.
     let low = quantile(successes, failures + 1.0, 0.025).unwrap_or(0.0);
     let high = quantile(successes + 1.0, failures, 0.975).unwrap_or(1.0);
     [low, high]
 }
 
-/// The 95 % interval of a share whose trials come in clusters, of which only the clusters are independent:
-/// `(successes, trials)` of each. `None` for fewer than five clusters.
+/// Returns the 95 % interval of a share whose trials come in clusters, of which only the clusters are
+/// independent. `clusters` holds `(successes, trials)` of each; clusters without trials are ignored. `None`
+/// for fewer than five clusters.
 ///
-/// Clopper and Pearson's with as many trials as independent ones would need for the same variance,
-/// p(1 − p)/v with v of the ratio over clusters, corrected for its degrees of freedom; where every trial
-/// succeeds, or none, v is 0 and a cluster counts as one trial.
+/// The interval is Clopper and Pearson's for an effective number of trials: as many as independent trials
+/// would need for the same variance, p(1 − p)/v, where v is the variance of the ratio over clusters,
+/// corrected for its degrees of freedom. Where v is 0, as when every trial or none succeeds, each cluster
+/// counts as one trial.
 ///
 /// # Reference
 /// E. L. Korn, B. I. Graubard, Survey Methodology 24 (1998) 193–201.
@@ -50,8 +54,8 @@ pub fn clustered_interval(clusters: &[(usize, usize)]) -> Option<[f64; 2]> {
     Some(binomial_interval(share * effective, effective))
 }
 
-/// Two-sided p-value of the sign test: how often chance gives a split at least as uneven as `wins`
-/// against `losses`. Ties are left out beforehand; 1 for no trials.
+/// Returns the two-sided p-value of the sign test: the probability that chance gives a split at least as
+/// uneven as `wins` against `losses`. Leave ties out beforehand. 1 for no trials.
 ///
 /// ```
 /// // Nine of ten: both tails of a binomial of one half, (1 + 10)/2¹⁰ each.
@@ -70,9 +74,9 @@ pub fn sign_test(wins: usize, losses: usize) -> f64 {
     Binomial::new(0.5, trials).map_or(f64::NAN, |binomial| (2.0 * binomial.cdf(fewer)).min(1.0))
 }
 
-/// p-values adjusted for their number by Holm's method: the chance that any of the true hypotheses among
-/// them is rejected stays below the level that the adjusted ones are held to. One entry for each given, in their order; an
-/// entry that is not a number stays so and does not count.
+/// Adjusts p-values for their number by Holm's method: if those below a level are rejected, the probability
+/// that any true hypothesis is among them stays below that level. One entry per given p-value, in their
+/// order; a NaN entry stays NaN and does not count.
 ///
 /// ```
 /// let adjusted = scoring::holm(&[0.01, 0.04, 0.03]);
@@ -116,27 +120,28 @@ mod tests {
     #[test]
     fn shares_of_clusters() {
         assert_eq!(clustered_interval(&[(1, 2); 4]), None);
-        // Clusters that are all held or all missed are worth one trial each, less the variance's own
-        // uncertainty: about n·(1.972/1.985)².
+        // Clusters whose trials all succeed or all fail are worth one trial each, less the uncertainty of the
+        // variance itself: about n·(1.972/1.985)².
         let torn: Vec<(usize, usize)> = (0..100).map(|i| if i < 90 { (20, 20) } else { (0, 20) }).collect();
         let [low, high] = clustered_interval(&torn).unwrap();
         let [lone_low, lone_high] = binomial_interval(90.0, 100.0);
         assert!((low - lone_low).abs() < 0.003 && (high - lone_high).abs() < 0.003, "{low} {high}");
-        // Where all clusters have the same share, all trials count.
+        // If all clusters have nearly the same share, all trials count.
         let almost: Vec<(usize, usize)> = (0..100).map(|i| (19 - i % 2, 20)).collect();
         assert_eq!(clustered_interval(&almost), Some(binomial_interval(1850.0, 2000.0)));
-        // Exactly the same share, so that no variance is seen: one trial a cluster, as where none is missed.
+        // With exactly the same share the variance is zero: each cluster counts as one trial, as if all
+        // trials succeeded.
         assert_eq!(clustered_interval(&[(10, 20); 60]), Some(binomial_interval(30.0, 60.0)));
         assert!(clustered_interval(&[(1, 2); 5]).is_some());
         assert_eq!(clustered_interval(&[(20, 20); 60]), Some(binomial_interval(60.0, 60.0)));
     }
 
-    /// Six clusters of ten, worked out with 25 digits: variance 6/5·16/60², quantiles of Student's t with 59 and
-    /// 5 degrees of freedom, 18.178 effective trials, and their interval by the incomplete beta function.
+    /// Six clusters of ten, computed with 25 digits: variance 6/5·16/60², quantiles of Student's t with 59
+    /// and 5 degrees of freedom, 18.178 effective trials, and their interval by the incomplete beta function.
     #[test]
     fn an_interval_of_clusters_by_hand() {
         let clusters = [(8, 10), (9, 10), (10, 10), (7, 10), (5, 10), (9, 10)];
-        // An empty one more is none.
+        // An additional empty cluster does not count.
         assert_eq!(clustered_interval(&[&clusters[..], &[(0, 0)]].concat()), clustered_interval(&clusters));
         let [low, high] = clustered_interval(&clusters).unwrap();
         assert!(
@@ -145,7 +150,7 @@ mod tests {
         );
     }
 
-    /// Of many samples of clustered trials about 95 % hold the true share.
+    /// About 95 % of the intervals of simulated clustered trials hold the true share.
     #[test]
     fn clustered_intervals_hold_the_share_as_often_as_they_say() {
         use rand::RngExt;

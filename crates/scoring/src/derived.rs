@@ -1,47 +1,47 @@
-//! What follows from a decay rate, a frequency and a moment of inertia.
+//! Quantities derived from a decay rate, a frequency and a moment of inertia.
 //!
 //! For I·θ̈ + c·θ̇ + k·θ = 0 with λ = c/(2I), ω² = k/I (small damping), ζ = λ/ω.
 
 use std::f64::consts::{LN_2, PI};
 
-/// Quality factor Q = 1/(2ζ), from ζ > 0.
+/// Returns the quality factor Q = 1/(2ζ), for ζ > 0.
 #[must_use]
 pub fn quality_factor(zeta: f64) -> f64 {
     1.0 / (2.0 * zeta)
 }
 
-/// Cycles in which the amplitude falls to 1/e: 1/(2π·ζ) = Q/π, from ζ > 0. (The *energy* takes half as
-/// many; Q cycles are what the amplitude takes to e^(−π).)
+/// Returns the number of cycles in which the amplitude falls to 1/e: 1/(2π·ζ) = Q/π, for ζ > 0. (The *energy*
+/// needs half as many cycles; after Q cycles the amplitude has fallen to e^(−π).)
 #[must_use]
 pub fn cycles_to_one_over_e(zeta: f64) -> f64 {
     1.0 / (2.0 * PI * zeta)
 }
 
-/// Half-life of the amplitude in seconds: ln 2/λ, from λ in 1/s.
+/// Returns the half-life of the amplitude in seconds: ln 2/λ, with λ in 1/s.
 #[must_use]
 pub fn half_life(decay_rate: f64) -> f64 {
     LN_2 / decay_rate
 }
 
-/// Time constant of the amplitude in seconds: 1/λ, from λ in 1/s.
+/// Returns the time constant of the amplitude in seconds: 1/λ, with λ in 1/s.
 #[must_use]
 pub fn time_constant(decay_rate: f64) -> f64 {
     1.0 / decay_rate
 }
 
-/// Stiffness k = I·ω² in N·m/rad, from I in kg·m² and ω in rad/s.
+/// Returns the stiffness k = I·ω² in N·m/rad, with I in kg·m² and ω in rad/s.
 #[must_use]
 pub fn stiffness(inertia: f64, omega: f64) -> f64 {
     inertia * omega * omega
 }
 
-/// Damping coefficient c = 2·I·λ in N·m·s/rad, from I in kg·m² and λ in 1/s.
+/// Returns the damping coefficient c = 2·I·λ in N·m·s/rad, with I in kg·m² and λ in 1/s.
 #[must_use]
 pub fn damping_coefficient(inertia: f64, decay_rate: f64) -> f64 {
     2.0 * inertia * decay_rate
 }
 
-/// Critical damping 2·√(k·I) in N·m·s/rad, from I in kg·m² and k in N·m/rad.
+/// Returns the critical damping 2·√(k·I) in N·m·s/rad, with I in kg·m² and k in N·m/rad.
 #[must_use]
 pub fn critical_damping(inertia: f64, stiffness: f64) -> f64 {
     2.0 * (stiffness * inertia).sqrt()

@@ -1,21 +1,21 @@
-//! Errors against the oracle.
+//! Errors of estimates against the oracle.
 
-/// Relative distance of an estimate from the oracle, in percent: |x − x₀| / |x₀| · 100.
+/// Returns the relative distance of an estimate from the oracle, in percent: |x − x₀| / |x₀| · 100.
 ///
-/// Infinite where the oracle is zero and the estimate is not; 0 where both are.
+/// Infinite if the oracle is zero and the estimate is not; 0 if both are.
 #[must_use]
 pub fn error_percent(estimate: f64, oracle: f64) -> f64 {
     let distance = (estimate - oracle).abs();
     if distance == 0.0 { 0.0 } else { distance / oracle.abs() * 100.0 }
 }
 
-/// Returns whether an error in percent passes a tolerance in percent; what is not a number does not.
+/// Returns `true` if an error in percent is at most a tolerance in percent; NaN never passes.
 #[must_use]
 pub fn passes(error_percent: f64, tolerance_percent: f64) -> bool {
     error_percent <= tolerance_percent
 }
 
-/// The largest error; what is not a number counts as the largest of all. Not a number for none.
+/// Returns the largest error; NaN counts as the largest of all. NaN if there are no errors.
 #[must_use]
 pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
     let larger =
@@ -23,7 +23,7 @@ pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
     errors.into_iter().reduce(larger).unwrap_or(f64::NAN)
 }
 
-/// The median; of an even number of entries the mean of the middle two; not a number for none.
+/// Returns the median, which is the mean of the middle two for an even number of values. NaN for no values.
 #[must_use]
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.into_iter().collect();
@@ -33,8 +33,8 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     if sorted.len() % 2 == 1 { upper } else { f64::midpoint(at((sorted.len() / 2).wrapping_sub(1)), upper) }
 }
 
-/// Significant digits in which an estimate agrees with the oracle, from the error in percent: minus the
-/// decimal logarithm of the relative error, from 0 to the 15.7 that a double has.
+/// Returns the number of significant digits in which an estimate agrees with the oracle: minus the decimal
+/// logarithm of the relative error, limited to the range from 0 to the 15.7 digits of a double. NaN gives 0.
 #[must_use]
 pub fn digits_of_agreement(error_percent: f64) -> f64 {
     const MOST: f64 = 15.7;

@@ -1,5 +1,5 @@
-//! How far an estimate is from the oracle, whether that passes, what follows from a damping ratio, how well
-//! held-out peaks are predicted, and what chance alone would give.
+//! Scores of estimates: error against the oracle, tolerance, agreement, quantities derived from a damping
+//! ratio, prediction of held-out peaks, and statistics of chance.
 //!
 //! # Example
 //!

@@ -1,24 +1,24 @@
-//! How well predicted peaks meet peaks that were held out.
+//! Scores of predictions at held-out peaks.
 
 use std::f64::consts::PI;
 
 /// Half-width of a Gaussian 95 % interval in standard deviations.
 const GAUSSIAN_95: f64 = 1.959_963_984_540_054;
 
-/// A peak that was held out from a fit, and what the fit says of it.
+/// A peak that was held out from a fit, and the fit's prediction for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOutPeak {
-    /// ln A of the peak.
+    /// Measured ln A of the peak.
     pub observed: f64,
-    /// ln A as predicted; where the prediction has come to rest −∞, where there is none not a number.
+    /// Predicted ln A: −∞ if the predicted motion has come to rest, NaN if there is no prediction.
     pub predicted: f64,
-    /// Standard deviation that the prediction states for a measured ln A about it.
+    /// Standard deviation of a measured ln A about the prediction; `None` if the method states none.
     pub std_error: Option<f64>,
 }
 
 impl HeldOutPeak {
-    /// Returns whether the stated 95 % interval, predicted ± 1.96 standard deviations, holds the peak; `None` where
-    /// none is stated. About a prediction that is not finite there is no interval, and it holds nothing.
+    /// Returns `true` if the stated 95 % interval, predicted ± 1.96 standard deviations, holds the peak.
+    /// `None` if no standard deviation is stated; `Some(false)` if the prediction is not finite.
     #[must_use]
     pub fn is_within_95(&self) -> Option<bool> {
         if !self.predicted.is_finite() {
@@ -27,8 +27,8 @@ impl HeldOutPeak {
         self.std_error.map(|error| (self.observed - self.predicted).abs() <= GAUSSIAN_95 * error)
     }
 
-    /// Natural logarithm of the stated Gaussian density at the peak; `None` where none is stated, −∞ about
-    /// a prediction that is not finite.
+    /// Returns the natural logarithm of the stated Gaussian density at the peak. `None` if no standard
+    /// deviation is stated; −∞ if the prediction is not finite.
     #[must_use]
     pub fn log_density(&self) -> Option<f64> {
         if !self.predicted.is_finite() {
@@ -41,8 +41,8 @@ impl HeldOutPeak {
     }
 }
 
-/// Root mean square of ln A's errors; infinite where a prediction is not finite, and not a number for no
-/// peaks: a fit without a prediction is not left out.
+/// Returns the root mean square error of ln A. Infinite if a prediction is not finite, so that no failed
+/// prediction is ignored; NaN for no peaks.
 #[must_use]
 pub fn rms_log_error(peaks: &[HeldOutPeak]) -> f64 {
     let square = |peak: &HeldOutPeak| {
@@ -52,8 +52,8 @@ pub fn rms_log_error(peaks: &[HeldOutPeak]) -> f64 {
     (peaks.iter().map(square).sum::<f64>() / peaks.len() as f64).sqrt()
 }
 
-/// Root mean square of the amplitudes' relative errors Â/A − 1, in percent. A prediction at rest misses by
-/// 100 %; a prediction that is not a number counts as infinitely wrong.
+/// Returns the root mean square of the amplitudes' relative errors Â/A − 1, in percent. A prediction at rest
+/// has an error of 100 %; a NaN prediction has an infinite error.
 #[must_use]
 pub fn relative_amplitude_error_percent(peaks: &[HeldOutPeak]) -> f64 {
     let square = |peak: &HeldOutPeak| {
@@ -63,16 +63,16 @@ pub fn relative_amplitude_error_percent(peaks: &[HeldOutPeak]) -> f64 {
     100.0 * (peaks.iter().map(square).sum::<f64>() / peaks.len() as f64).sqrt()
 }
 
-/// Mean logarithm of the predictive density over the peaks; `None` where a peak has none stated, or for no
-/// peaks.
+/// Returns the mean logarithm of the predictive density over the peaks. `None` for no peaks, or if a peak
+/// with a finite prediction has no stated standard deviation.
 #[must_use]
 pub fn mean_log_density(peaks: &[HeldOutPeak]) -> Option<f64> {
     let densities: Option<Vec<f64>> = peaks.iter().map(HeldOutPeak::log_density).collect();
     densities.filter(|all| !all.is_empty()).map(|all| all.iter().sum::<f64>() / all.len() as f64)
 }
 
-/// Number of stated 95 % intervals that hold their peak, and their number; `None` where a peak has none
-/// stated, or for no peaks.
+/// Returns the number of stated 95 % intervals that hold their peak, and the number of peaks. `None` for no
+/// peaks, or if a peak with a finite prediction has no stated standard deviation.
 #[must_use]
 pub fn held_within_95(peaks: &[HeldOutPeak]) -> Option<(usize, usize)> {
     let held: Option<Vec<bool>> = peaks.iter().map(HeldOutPeak::is_within_95).collect();
@@ -113,7 +113,8 @@ mod tests {
         }
     }
 
-    /// Away from 0 and from a standard deviation of 1, where a product is no quotient and a sum no difference.
+    /// Values away from a mean of 0 and a standard deviation of 1, where products differ from quotients and
+    /// sums from differences.
     #[test]
     fn a_gaussian_is_measured_from_its_mean_in_standard_deviations() {
         let peaks = [peak(3.0, 4.0, Some(0.5)), peak(3.0, 3.0, Some(0.5))];

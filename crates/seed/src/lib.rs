@@ -1,8 +1,8 @@
 //! Random generators derived by name from one seed.
 //!
-//! Every part that draws random numbers asks for a generator by a path of names, such as
-//! `pinn / initial weights`. A generator depends on the seed and on its own path only, so adding a
-//! part, or a draw to another part, changes nobody else's numbers.
+//! Every part that draws random numbers asks for a generator by a path of names, such as `pinn / initial
+//! weights`. A generator depends on the seed and on its own path only: a new part, or another draw in an
+//! existing part, changes no other part's numbers.
 //!
 //! ```
 //! use rand::RngExt;
@@ -19,14 +19,14 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use sha2::{Digest, Sha256};
 
-/// A node in the tree of seeds: a 256-bit key from which generators and further nodes derive.
+/// Node in the tree of seeds: a 256-bit key from which generators and further nodes derive.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seed {
     key: [u8; 32],
 }
 
 impl Seed {
-    /// The root for a seed as written in a configuration.
+    /// Creates the root node from the seed in a configuration.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut hash = Sha256::new();
@@ -35,9 +35,9 @@ impl Seed {
         Self { key: hash.finalize().into() }
     }
 
-    /// The node below this one with the given name.
+    /// Returns the node below this one with the given name.
     ///
-    /// The name's length goes into the key, so that no two paths can run together.
+    /// The length of the name enters the key, so that different paths never share a key.
     #[must_use]
     pub fn child(&self, name: &str) -> Self {
         let mut hash = Sha256::new();
@@ -47,7 +47,7 @@ impl Seed {
         Self { key: hash.finalize().into() }
     }
 
-    /// A generator that starts from this node: ChaCha with 12 rounds, the same on every platform.
+    /// Creates a generator that starts from this node: ChaCha with 12 rounds, the same on every platform.
     #[must_use]
     pub fn generator(&self) -> ChaCha12Rng {
         ChaCha12Rng::from_seed(self.key)
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn draws_are_frozen() {
-        // A change here changes every published number: it needs an entry in the changelog.
+        // A change here changes every published number, and needs an entry in the changelog.
         let mut generator = Seed::new(3).child("pinn").generator();
         assert_eq!(generator.next_u64(), FROZEN);
     }

@@ -1,28 +1,30 @@
-//! A configuration that stands on others: `base = "rig.toml"`, or a list of files.
+//! Base files of a configuration: `base = "rig.toml"`, or a list of files.
 
 use crate::document::{Document, Leaf};
 use crate::error::SettingsError;
 use std::path::{Component, Path, PathBuf};
 use toml::Value;
 
-/// The key at the top that names the files below.
+/// Top-level key that names the base files.
 const KEY: &str = "base";
 
-/// Files on one way down. Nobody needs so many; links on the disk can hide a circle from names.
+/// Longest chain of base files. No configuration needs so many; links on the disk can hide a cycle from the
+/// file names.
 const DEEPEST: usize = 32;
 
 impl Document {
-    /// Puts the document on top of the files that its key `base` names, each on those that it names itself.
+    /// Merges the document with the files that its key `base` names, and each of them with its own base
+    /// files.
     ///
-    /// What a file says goes before what is below it, key by key, and a later file of a list before an earlier
-    /// one; a list of tables (`[[effects]]`) replaces the one below as a whole. A relative name starts from the
-    /// folder of the file that gives it. Every leaf keeps the place where it was written. `read` gives the text
-    /// of a file, or says in words why it cannot.
+    /// Values of a file override those of its base files, key by key, and a later file of a list overrides an
+    /// earlier one. A list of tables (`[[effects]]`) replaces the list in a base file as a whole. A relative
+    /// name starts from the folder of the file that contains it. Every leaf keeps its origin. `read` returns
+    /// the text of a file, or says in words why it cannot.
     ///
     /// # Errors
-    /// [`SettingsError::Base`] where a file is not there, [`SettingsError::BaseCircle`] where files stand on
-    /// themselves, [`SettingsError::BadValue`] where `base` is no name and no list of names, and
-    /// [`SettingsError::Syntax`].
+    /// [`SettingsError::Base`] if a file cannot be read, [`SettingsError::BaseCircle`] if a file is a base of
+    /// itself, directly or through others, [`SettingsError::BadValue`] if `base` is neither a name nor a list
+    /// of names, and [`SettingsError::Syntax`].
     pub fn on_its_bases(
         self,
         read: &mut dyn FnMut(&Path) -> Result<String, String>,
@@ -81,7 +83,7 @@ fn names(leaf: &Leaf) -> Result<Vec<String>, SettingsError> {
     })
 }
 
-/// A path without `.` and without `name/..`.
+/// Returns a path without `.` and `name/..`.
 pub(crate) fn simplified(path: &Path) -> PathBuf {
     let mut simple = PathBuf::new();
     for part in path.components() {

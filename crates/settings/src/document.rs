@@ -1,4 +1,4 @@
-//! A configuration as written: its leaves, each with the place it comes from.
+//! Configuration as written: its leaves, each with its origin.
 
 use crate::error::SettingsError;
 use crate::origin::Origin;
@@ -9,40 +9,41 @@ use toml::de::{DeTable, DeValue};
 /// A value that is not a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leaf {
-    /// The dotted key, such as `estimator.hidden`.
+    /// Dotted key, such as `estimator.hidden`.
     pub key: String,
-    /// The value as written.
+    /// Value as written.
     pub value: Value,
-    /// Where it was written.
+    /// Place where the value was written.
     pub origin: Origin,
     /// Folder that a relative path in the value starts from; empty for the working directory.
     pub folder: String,
 }
 
-/// The key at the top that says where relative paths of a file start: [`FROM_FILE`] or [`FROM_WORKING_DIRECTORY`].
+/// Top-level key that sets the start of a file's relative paths: [`FROM_FILE`] or [`FROM_WORKING_DIRECTORY`].
 pub(crate) const PATHS: &str = "paths";
 pub(crate) const FROM_FILE: &str = "file";
-/// As a run's own copy of its configuration has it.
+/// Used in a run's own copy of its configuration.
 pub(crate) const FROM_WORKING_DIRECTORY: &str = "working-directory";
 
-/// A configuration as written, overrides included: an ordered list of leaves, each key once.
+/// Configuration as written, including overrides: an ordered list of leaves with unique keys.
 ///
-/// An array of tables is a table of numbered ones: the second `[[effects]]` is `[effects.2]`.
+/// An array of tables is stored as numbered tables: the second `[[effects]]` is `[effects.2]`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     file: String,
     leaves: Vec<Leaf>,
-    /// Dotted names of the tables that the file opens, empty ones among them.
+    /// Dotted names of the tables that the file opens, including empty ones.
     tables: Vec<String>,
     /// Dotted names of the lists of tables.
     lists: Vec<String>,
 }
 
 impl Document {
-    /// Reads TOML text; `file` is the name that messages use.
+    /// Parses TOML text; `file` is the name used in messages.
     ///
     /// # Errors
-    /// [`SettingsError::Syntax`] with line and column where the text is not TOML, or a name in it needs quotes.
+    /// [`SettingsError::Syntax`] with line and column if the text is not TOML, or if a name in it needs
+    /// quotes.
     pub fn parse(file: &str, text: &str) -> Result<Self, SettingsError> {
         let table = DeTable::parse(text).map_err(|error| {
             let (line, column) = place(text, error.span().map_or(0, |span| span.start));
@@ -55,26 +56,26 @@ impl Document {
         Ok(document)
     }
 
-    /// Name of the file it was read from.
+    /// Returns the name of the file that the document was read from.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Every leaf, in the order written.
+    /// Returns every leaf, in the order written.
     #[must_use]
     pub fn leaves(&self) -> &[Leaf] {
         &self.leaves
     }
 
-    /// The leaf with a dotted key.
+    /// Returns the leaf with a dotted key.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Leaf> {
         self.leaves.iter().find(|leaf| leaf.key == key)
     }
 
-    /// Names of the tables directly below a table, as `one` of `[prefix.one]`: in the order written, those
-    /// that only an override opens last.
+    /// Returns the names of the tables directly below a table, such as `one` of `[prefix.one]`: in the order
+    /// written, with those that only an override opens at the end.
     #[must_use]
     pub fn tables_below(&self, prefix: &str) -> Vec<String> {
         let below = |key: &str| {
@@ -95,10 +96,10 @@ impl Document {
         names
     }
 
-    /// Applies one `key=value` argument; the value is TOML, or plain text where it is not.
+    /// Applies one `key=value` argument. The value is parsed as TOML, and is plain text if it is not TOML.
     ///
     /// # Errors
-    /// [`SettingsError::BadOverride`] where there is no `=` or the key is not a dotted name.
+    /// [`SettingsError::BadOverride`] if there is no `=` or the key is not a dotted name.
     pub fn apply_override(&mut self, argument: &str) -> Result<(), SettingsError> {
         let bad = || SettingsError::BadOverride { argument: argument.to_owned() };
         let (key, text) = argument.split_once('=').ok_or_else(bad)?;
@@ -117,20 +118,21 @@ impl Document {
         Ok(())
     }
 
-    /// Takes away what the file writes in a table and below it; what overrides put there stays.
+    /// Removes the file's leaves in a table and below it; leaves from overrides stay.
     pub fn clear_table(&mut self, table: &str) {
         self.leaves
             .retain(|leaf| !lies_below(&leaf.key, table) || !matches!(leaf.origin, Origin::File { .. }));
         self.tables.retain(|known| !lies_below(known, table));
     }
 
-    /// Takes a leaf out.
+    /// Removes a leaf and returns it.
     pub(crate) fn take(&mut self, key: &str) -> Option<Leaf> {
         let place = self.leaves.iter().position(|leaf| leaf.key == key)?;
         Some(self.leaves.remove(place))
     }
 
-    /// This document on top of another: its leaves displace those below, and its lists of tables whole lists.
+    /// Merges this document over another one: its leaves replace those of `below`, and its lists of tables
+    /// replace whole lists.
     pub(crate) fn over(self, below: Self) -> Self {
         let mut merged = Self { file: self.file, ..below };
         for list in &self.lists {
@@ -155,8 +157,8 @@ impl Document {
         merged
     }
 
-    /// Puts a leaf in place of what it displaces: the leaf of that key, a table of that name with all that is
-    /// below it, or a value where the key now needs a table.
+    /// Sets a leaf. It replaces the leaf of that key, a table of that name with everything below it, or a
+    /// value in a place where the key needs a table.
     fn set(&mut self, leaf: Leaf) {
         self.leaves.retain(|known| !lies_below(&known.key, &leaf.key) && !lies_below(&leaf.key, &known.key));
         self.tables.retain(|table| *table != leaf.key && !lies_below(table, &leaf.key));
@@ -166,7 +168,7 @@ impl Document {
         }
     }
 
-    /// Lets relative paths start from the file's folder, unless the file says that they start from the working directory.
+    /// Makes relative paths start from the file's folder, unless the file sets the working directory.
     fn place_paths(&mut self) -> Result<(), SettingsError> {
         let folder =
             Path::new(&self.file).parent().map_or_else(String::new, |path| path.display().to_string());
@@ -197,7 +199,7 @@ impl Document {
                 format!("{prefix}.{}", name.get_ref())
             };
             let (line, column) = place(text, name.span().start);
-            // A dotted key is split at its dots again, and written without quotes.
+            // A dotted key is split at its dots later, and written without quotes.
             if !is_name(name.get_ref()) {
                 return Err(SettingsError::Syntax {
                     file: self.file.clone(),
@@ -234,12 +236,12 @@ impl Document {
     }
 }
 
-/// Returns whether a dotted key belongs to a table or to one below it.
+/// Returns `true` if a dotted key lies in a table or below it.
 fn lies_below(key: &str, table: &str) -> bool {
     key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'))
 }
 
-/// The tables of a list that holds nothing else, and something.
+/// Returns the tables of a list that holds only tables; `None` for other values and for an empty list.
 fn tables<'a, 'i>(value: &'a DeValue<'i>) -> Option<Vec<&'a DeTable<'i>>> {
     let DeValue::Array(entries) = value else { return None };
     let inner = entries.iter().map(|entry| match entry.get_ref() {
@@ -249,7 +251,7 @@ fn tables<'a, 'i>(value: &'a DeValue<'i>) -> Option<Vec<&'a DeTable<'i>>> {
     inner.collect::<Option<Vec<_>>>().filter(|tables| !tables.is_empty())
 }
 
-/// A parsed value without its spans. Numbers are decoded here: the parser keeps them as text.
+/// Returns a parsed value without its spans. The parser keeps numbers as text; they are decoded here.
 fn plain(value: &DeValue<'_>) -> Result<Value, String> {
     Ok(match value {
         DeValue::String(text) => Value::String(text.to_string()),
@@ -269,12 +271,12 @@ fn plain(value: &DeValue<'_>) -> Result<Value, String> {
     })
 }
 
-/// Returns whether a name may be part of a dotted key.
+/// Returns `true` if a name can be part of a dotted key.
 fn is_name(part: &str) -> bool {
     !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
 }
 
-/// Line and column, both from 1, of a byte offset; columns count characters.
+/// Returns line and column of a byte offset, both counted from 1; columns count characters.
 fn place(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line = before.matches('\n').count() + 1;

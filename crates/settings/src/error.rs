@@ -1,9 +1,9 @@
-//! What can be wrong with a configuration.
+//! Errors in a configuration.
 
 use crate::origin::Origin;
 use thiserror::Error;
 
-/// A configuration that cannot be used: where, what was found, what was expected.
+/// Reason why a configuration cannot be used, with the place, what was found and what was expected.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SettingsError {
     /// The text is not TOML.
@@ -15,17 +15,17 @@ pub enum SettingsError {
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// What the parser says.
+        /// Message of the parser.
         problem: String,
     },
-    /// A key that nobody declared.
+    /// A key that is not declared.
     #[error("{origin}: unknown key `{key}`{}", suggest(nearest.as_deref(), known))]
     UnknownKey {
-        /// Where it was written.
+        /// Place where the key was written.
         origin: Origin,
-        /// The dotted key.
+        /// Dotted key.
         key: String,
-        /// The declared key that is spelled most alike, if one is close.
+        /// Declared key with the most similar spelling, if one is close.
         nearest: Option<String>,
         /// Every key declared in the same section.
         known: Vec<String>,
@@ -33,95 +33,95 @@ pub enum SettingsError {
     /// A value of the wrong kind or out of range.
     #[error("{origin}: `{key}` is {found}; expected {expected}{unit}")]
     BadValue {
-        /// Where it was written.
+        /// Place where the value was written.
         origin: Origin,
-        /// The dotted key.
+        /// Dotted key.
         key: String,
-        /// The value as written.
+        /// Value as written.
         found: String,
-        /// What the declaration admits.
+        /// Values that the declaration allows.
         expected: String,
-        /// The unit in words, with a leading blank; empty where there is none.
+        /// Unit in words, with a leading space; empty if the value has none.
         unit: String,
     },
-    /// A word that is none of those known, where the set is not fixed at compile time.
+    /// A name that is not among the known ones, where these are known only at run time.
     #[error("{origin}: unknown {what} \"{found}\"{}", suggest(nearest.as_deref(), known))]
     UnknownName {
-        /// Where it was written.
+        /// Place where the name was written.
         origin: Origin,
-        /// What kind of thing is named, such as `estimator`.
+        /// Kind of the named thing, such as `estimator`.
         what: String,
-        /// The name as written.
+        /// Name as written.
         found: String,
-        /// The known name that is spelled most alike, if one is close.
+        /// Known name with the most similar spelling, if one is close.
         nearest: Option<String>,
         /// Every known name.
         known: Vec<String>,
     },
-    /// A key that the file has for something else than the command line chose.
+    /// A key of the file that does not belong to the choice on the command line.
     #[error("{origin}: `{key}` is no key of `{chosen}`; {remedy}")]
     ForeignKey {
-        /// Where it was written.
+        /// Place where the key was written.
         origin: Origin,
-        /// The dotted key.
+        /// Dotted key.
         key: String,
-        /// What was chosen.
+        /// Choice on the command line.
         chosen: String,
-        /// What to do.
+        /// Advice to the user.
         remedy: String,
     },
-    /// A key that has to be given is absent.
+    /// A required key is absent.
     #[error("{file}: `{key}` is missing: {meaning} Expected {expected}.")]
     Missing {
         /// Name of the file.
         file: String,
-        /// The dotted key.
+        /// Dotted key.
         key: String,
-        /// What the key means.
+        /// Meaning of the key.
         meaning: String,
-        /// What the declaration admits.
+        /// Values that the declaration allows.
         expected: String,
     },
     /// An override that is not of the form `key=value`.
     #[error("command line: `{argument}` is no override; write KEY=VALUE, for example seed=3")]
     BadOverride {
-        /// The argument as given.
+        /// Argument as given.
         argument: String,
     },
-    /// A file that another stands on is not to be had.
+    /// A base file cannot be read.
     #[error("{origin}: the base {file} cannot be read: {problem}")]
     Base {
-        /// Where it was named.
+        /// Place where the file was named.
         origin: Origin,
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// Why it cannot be read.
+        /// Reason why it cannot be read.
         problem: String,
     },
-    /// A file stands on itself.
+    /// A file is a base of itself, directly or through others.
     #[error("{origin}: `base` leads back to where it started: {}", files.join(", "))]
     BaseCircle {
-        /// Where the way down closes.
+        /// Place that names a file of the chain again.
         origin: Origin,
-        /// The files on the way.
+        /// Files of the chain.
         files: Vec<String>,
     },
-    /// Values that are each as declared and do not go together.
+    /// Values that are valid each by itself but not together.
     #[error("{file}: cannot be used: {problem}")]
     Refused {
         /// Name of the file.
         file: String,
-        /// What is wrong.
+        /// Description of the conflict.
         problem: String,
     },
-    /// The checked table does not fit the struct that reads it: a fault of the program.
+    /// The checked table does not fit the struct that is read from it: a fault of the program.
     #[error(
         "section `{section}` does not fit its declaration: {problem} (a fault of the program, please report it)"
     )]
     Declaration {
-        /// The section.
+        /// Name of the section.
         section: String,
-        /// What serde says.
+        /// Message of serde.
         problem: String,
     },
 }

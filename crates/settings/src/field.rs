@@ -1,4 +1,4 @@
-//! The declaration of a key.
+//! Declaration of a configuration key.
 
 use toml::Value;
 
@@ -7,14 +7,14 @@ use toml::Value;
 pub enum Kind {
     /// `true` or `false`.
     Boolean,
-    /// A whole number within bounds, both included.
+    /// A whole number within inclusive bounds.
     Integer {
         /// Smallest value allowed.
         min: i64,
         /// Largest value allowed.
         max: i64,
     },
-    /// A finite number within bounds, both included. Whole numbers are taken as well.
+    /// A finite number within inclusive bounds. Whole numbers are accepted as well.
     Float {
         /// Smallest value allowed.
         min: f64,
@@ -23,8 +23,8 @@ pub enum Kind {
     },
     /// Free text.
     Text,
-    /// Name of a file or folder; a relative one starts from the folder of the configuration that says it, on the command
-    /// line from the working directory.
+    /// Name of a file or folder. A relative one starts from the folder of the configuration that contains it,
+    /// or from the working directory if given on the command line.
     Path,
     /// One of a fixed set of words.
     Choice(&'static [&'static str]),
@@ -35,7 +35,7 @@ pub enum Kind {
         /// Most entries allowed.
         at_most: usize,
     },
-    /// A list of whole numbers within bounds.
+    /// A list of whole numbers within inclusive bounds.
     Integers {
         /// Smallest value allowed for an entry.
         min: i64,
@@ -46,7 +46,7 @@ pub enum Kind {
         /// Most entries allowed.
         at_most: usize,
     },
-    /// A list of finite numbers within bounds.
+    /// A list of finite numbers within inclusive bounds.
     Floats {
         /// Smallest value allowed for an entry.
         min: f64,
@@ -59,12 +59,12 @@ pub enum Kind {
     },
 }
 
-/// Default of a key that a configuration does not mention.
+/// Default of a key that is absent from a configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Default {
-    /// There is none: the key has to be given.
+    /// No default: the key is required.
     Required,
-    /// The key may be absent and has no value then.
+    /// No value: the key is optional.
     Absent,
     /// A Boolean.
     Boolean(bool),
@@ -83,7 +83,7 @@ pub enum Default {
 }
 
 impl Default {
-    /// The default as a TOML value; `None` for [`Default::Required`] and [`Default::Absent`].
+    /// Returns the default as a TOML value; `None` for [`Default::Required`] and [`Default::Absent`].
     #[must_use]
     pub fn value(&self) -> Option<Value> {
         match *self {
@@ -108,32 +108,32 @@ impl Default {
 /// One key of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Field {
-    /// The key within its section.
+    /// Name of the key within its section.
     pub key: &'static str,
     /// Kind of the value.
     pub kind: Kind,
-    /// Default of a key that a configuration does not mention.
+    /// Default of the key if it is absent from a configuration.
     pub default: Default,
-    /// The unit of the value; empty where it has none.
+    /// Unit of the value; empty if it has none.
     pub unit: &'static str,
-    /// Meaning of the key: one sentence.
+    /// Meaning of the key, in one sentence.
     pub meaning: &'static str,
-    /// Where the default comes from: a paper, a standard, a measurement.
+    /// Source of the default: a paper, a standard or a measurement.
     pub source: &'static str,
 }
 
 /// A table of a configuration and the keys it may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section<'a> {
-    /// The table's dotted name; empty for the keys at the top. A configuration may name tables of its own,
-    /// as in `[problem.NAME]`: [`crate::Document::tables_below`] finds them.
+    /// Dotted name of the table; empty for the top-level keys. A configuration may name tables of its own, as
+    /// in `[problem.NAME]`: [`crate::Document::tables_below`] finds them.
     pub name: &'a str,
-    /// The keys.
+    /// Keys of the table.
     pub fields: &'a [Field],
 }
 
 impl Kind {
-    /// Brings a value into the declared kind: whole numbers become floats where floats are declared.
+    /// Converts a value to the declared kind: whole numbers become floats where floats are declared.
     ///
     /// # Errors
     /// A sentence that says what was expected, for instance `a number from 0 to 1`.
@@ -176,7 +176,7 @@ impl Kind {
         admitted.ok_or_else(|| self.expected())
     }
 
-    /// Returns what the kind admits, in words.
+    /// Returns a description of the values that the kind allows.
     #[must_use]
     pub fn expected(&self) -> String {
         match self {
@@ -202,7 +202,7 @@ impl Kind {
 }
 
 fn float_within(value: &Value, min: f64, max: f64) -> Option<Value> {
-    // Beyond 2^53 a whole number would change on its way to a float; no key has use for such.
+    // A whole number beyond 2^53 would change when converted to a float; no key needs such numbers.
     const LARGEST_EXACT: u64 = 1 << 53;
     let number = match *value {
         Value::Float(number) => number,
@@ -212,7 +212,8 @@ fn float_within(value: &Value, min: f64, max: f64) -> Option<Value> {
     (number.is_finite() && (min..=max).contains(&number)).then_some(Value::Float(number))
 }
 
-/// `from MIN to MAX`, leaving out a bound that bounds nothing; `above 0` where everything positive is admitted.
+/// Returns `from MIN to MAX` without the bounds that exclude nothing, or `above 0` if every positive number
+/// is allowed.
 fn range<T: std::fmt::Display + Bound>(min: &T, max: &T) -> String {
     match (min.is_open(), max.is_open()) {
         (true, true) => "of any size".to_owned(),
@@ -225,7 +226,8 @@ fn range<T: std::fmt::Display + Bound>(min: &T, max: &T) -> String {
 }
 
 trait Bound {
-    /// Returns whether it leaves out only what is not positive, and no whole number.
+    /// Returns `true` if this lower bound allows every positive normal number and nothing else; never for
+    /// whole numbers.
     fn is_least_positive(&self) -> bool;
     fn is_open(&self) -> bool;
 }
@@ -254,7 +256,7 @@ impl Bound for f64 {
 mod tests {
     use super::{Kind, Value};
 
-    /// Its magnitude is no i64, and no float holds its neighbors.
+    /// The magnitude of `i64::MIN` is no `i64`, and no float represents the neighbors of these numbers.
     #[test]
     fn whole_numbers_that_a_float_would_change_are_no_floats() {
         let kind = Kind::Float { min: f64::MIN, max: f64::MAX };

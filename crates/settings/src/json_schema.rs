@@ -1,13 +1,13 @@
-//! Declared keys as JSON Schema (draft 2020-12), for editors.
+//! JSON Schema (draft 2020-12) of declared keys, for editors.
 //!
-//! What has to be given is kept apart from what may be: a file that stands on another
-//! ([`Document::on_its_bases`](crate::Document::on_its_bases)) need not say it itself.
+//! Requirements are kept apart from properties, since a file with a base
+//! ([`Document::on_its_bases`](crate::Document::on_its_bases)) may leave required keys to it.
 
 use crate::document::{FROM_FILE, FROM_WORKING_DIRECTORY, PATHS};
 use crate::field::{Default, Field, Kind, Section};
 use serde_json::{Map, Value, json};
 
-/// The keys of a table: no others.
+/// Returns the schema of a table that holds these keys and no others.
 #[must_use]
 pub fn table(fields: &[Field]) -> Value {
     let properties: Map<String, Value> =
@@ -15,13 +15,13 @@ pub fn table(fields: &[Field]) -> Value {
     closed(properties)
 }
 
-/// A table with these properties and no others.
+/// Returns the schema of a table with these properties and no others.
 #[must_use]
 pub fn closed(properties: Map<String, Value>) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 
-/// Sections in one another, as their dotted names say.
+/// Returns the schema of nested sections, nested by their dotted names.
 #[must_use]
 pub fn tables(sections: &[Section<'_>]) -> Value {
     let mut root = closed(Map::new());
@@ -33,7 +33,7 @@ pub fn tables(sections: &[Section<'_>]) -> Value {
     root
 }
 
-/// Puts a property into the table of a dotted name, which is made where it is absent.
+/// Inserts a property into the table of a dotted name. Missing tables are created.
 pub fn insert(root: &mut Value, table: &str, key: &str, schema: Value) {
     let mut place = root;
     for name in table.split('.').filter(|name| !name.is_empty()) {
@@ -45,7 +45,7 @@ pub fn insert(root: &mut Value, table: &str, key: &str, schema: Value) {
     }
 }
 
-/// Requirements of these sections, as a schema of its own.
+/// Returns the required keys of these sections as a separate schema.
 #[must_use]
 pub fn requirements(sections: &[Section<'_>]) -> Value {
     let mut root = json!({});
@@ -57,7 +57,7 @@ pub fn requirements(sections: &[Section<'_>]) -> Value {
     root
 }
 
-/// Adds a key of a dotted table, and the table with it, to what has to be given.
+/// Adds a key of a dotted table, and the table itself, to the required keys.
 pub fn require(root: &mut Value, table: &str, key: &str) {
     let (name, rest) = table.split_once('.').unwrap_or((table, ""));
     let own = if name.is_empty() { key } else { name };
@@ -74,13 +74,13 @@ pub fn require(root: &mut Value, table: &str, key: &str) {
     }
 }
 
-/// `then` where a key is one of these words.
+/// Returns a schema that applies `then` if `key` has the value `word`.
 #[must_use]
 pub fn case(key: &str, word: &str, then: Value) -> Value {
     json!({ "if": { "properties": { key: { "const": word } }, "required": [key] }, "then": then })
 }
 
-/// A schema, and requirements that hold where no other file lies below.
+/// Adds the keys `base` and `paths` to a schema, and requirements that hold only without `base`.
 #[must_use]
 pub fn with_base(mut table: Value, requirements: Value) -> Value {
     let base = json!({
@@ -101,7 +101,7 @@ pub fn with_base(mut table: Value, requirements: Value) -> Value {
     table
 }
 
-/// One key: kind, range, default, meaning with unit and source.
+/// Returns the schema of one key: kind, range, default, and meaning with unit and source.
 #[must_use]
 pub fn field(field: &Field) -> Value {
     let mut schema = kind(&field.kind);
@@ -112,7 +112,7 @@ pub fn field(field: &Field) -> Value {
     Value::Object(schema)
 }
 
-/// Meaning, unit and source in words.
+/// Returns meaning, unit and source of a key in words.
 #[must_use]
 pub fn description(field: &Field) -> String {
     let mut text = field.meaning.to_owned();
@@ -135,7 +135,7 @@ fn kind(kind: &Kind) -> Map<String, Value> {
         Kind::Float { min, max } => number(min, max),
         Kind::Text | Kind::Path => object(json!({ "type": "string" })),
         Kind::Choice(words) => object(json!({ "enum": words })),
-        // A single text stands for a list: `a,b`.
+        // A single text may replace a list: `a,b`.
         Kind::Texts { at_least, at_most } => {
             let list = list(object(json!({ "type": "string" })), at_least, at_most);
             object(json!({ "anyOf": [list, { "type": "string" }] }))

@@ -1,11 +1,12 @@
-//! Declared configuration keys: defaults, ranges, units, and checks that point at line and column.
+//! Declared configuration keys: defaults, ranges, units, and error messages with line and column.
 //!
-//! A part that can be configured declares its keys as data ([`Field`]): kind and range, default, unit,
-//! meaning, source of the default. The checks, the resolved configuration and the help text all come
-//! from that declaration, so that they cannot part from each other.
+//! A configurable part declares its keys as data ([`Field`]): kind and range, default, unit, meaning, and
+//! source of the default. The checks, the resolved configuration and the help text all use that declaration,
+//! so that they cannot contradict each other.
 //!
-//! The way of a configuration: text → [`Document`] (leaves with their origin) → put on its bases → overrides applied →
-//! [`Resolved`] (every key known, typed, in range, defaults filled in) → a plain struct by serde.
+//! Steps of a configuration: text → [`Document`] (leaves with their origin) → merged with its base files →
+//! overrides applied → [`Resolved`] (every key known, typed and in range, defaults filled in) → a plain
+//! struct by serde.
 //!
 //! # Example
 //!

@@ -1,11 +1,11 @@
-//! Where a value was set.
+//! Origin of a value.
 
 use std::fmt;
 
-/// Where a value comes from.
+/// Origin of a value: a file, the command line or the declaration.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Origin {
-    /// A place in a file.
+    /// Place in a file.
     File {
         /// Name of the file.
         file: String,
@@ -14,9 +14,9 @@ pub enum Origin {
         /// Column, from 1.
         column: usize,
     },
-    /// An override on the command line, as given.
+    /// Override on the command line, as given.
     Override(String),
-    /// The declaration's default.
+    /// Default of the declaration.
     Default,
 }
 

@@ -1,4 +1,4 @@
-//! A configuration with every key known, typed, in range, and defaults filled in.
+//! Configuration with every key known, typed and in range, and defaults filled in.
 
 use crate::base::simplified;
 use crate::document::{Document, FROM_WORKING_DIRECTORY, PATHS};
@@ -9,20 +9,20 @@ use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// One key's value in force.
+/// Value of one key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// The section's dotted name; empty at the top.
+    /// Dotted name of the section; empty for top-level keys.
     pub section: String,
-    /// The declaration.
+    /// Declaration of the key.
     pub field: Field,
-    /// The value in force; `None` for an optional key that was not given.
+    /// Value in use; `None` for an optional key that was not given.
     pub value: Option<Value>,
-    /// Where the value comes from.
+    /// Origin of the value.
     pub origin: Origin,
 }
 
-/// Every declared key with its value in force, in the order of declaration.
+/// Every declared key with its value in use, in the order of declaration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resolved {
     settings: Vec<Setting>,
@@ -32,8 +32,8 @@ impl Resolved {
     /// Checks a document against the declared sections and fills in the defaults.
     ///
     /// # Errors
-    /// [`SettingsError::UnknownKey`], [`SettingsError::BadValue`] and [`SettingsError::Missing`], the
-    /// first that is met in the order of the document.
+    /// [`SettingsError::UnknownKey`] and [`SettingsError::BadValue`], the first one in the order of the
+    /// document, or else [`SettingsError::Missing`], the first one in the order of declaration.
     pub fn new(document: &Document, sections: &[Section<'_>]) -> Result<Self, SettingsError> {
         let mut settings: Vec<Setting> = sections
             .iter()
@@ -77,16 +77,16 @@ impl Resolved {
         }
     }
 
-    /// Every setting, in the order of declaration.
+    /// Returns every setting, in the order of declaration.
     #[must_use]
     pub fn settings(&self) -> &[Setting] {
         &self.settings
     }
 
-    /// The setting with a dotted key.
+    /// Returns the setting with a dotted key.
     ///
     /// # Errors
-    /// [`SettingsError::UnknownKey`] with the key that is spelled most alike.
+    /// [`SettingsError::UnknownKey`] with the most similar known key, if one is close.
     pub fn setting(&self, key: &str) -> Result<&Setting, SettingsError> {
         self.settings
             .iter()
@@ -94,11 +94,12 @@ impl Resolved {
             .ok_or_else(|| unknown_key(key, Origin::Override(key.to_owned()), &self.settings))
     }
 
-    /// The number with a dotted key.
+    /// Returns the number with a dotted key.
     ///
     /// # Errors
-    /// [`SettingsError::UnknownKey`] with the key that is spelled most alike; [`SettingsError::Declaration`] where the key
-    /// has no value or one that is no number, which no declaration of a number with a default or required admits.
+    /// [`SettingsError::UnknownKey`] with the most similar known key, if one is close;
+    /// [`SettingsError::Declaration`] if the key has no value or its value is not a float. Neither happens
+    /// for a key declared as [`Kind::Float`](crate::Kind::Float) that is required or has a default.
     pub fn float(&self, key: &str) -> Result<f64, SettingsError> {
         let setting = self.setting(key)?;
         let number = setting.value.as_ref().and_then(Value::as_float);
@@ -111,8 +112,8 @@ impl Resolved {
     /// Reads one section into a struct.
     ///
     /// # Errors
-    /// [`SettingsError::Declaration`] where the struct and the declaration part: a fault of the
-    /// program, found by the test of whoever declares the section.
+    /// [`SettingsError::Declaration`] if the struct and the declaration do not match: a fault of the program,
+    /// which the declaring crate's tests find.
     pub fn section<T: DeserializeOwned>(&self, name: &str) -> Result<T, SettingsError> {
         let table: Table = self
             .settings
@@ -126,8 +127,8 @@ impl Resolved {
         })
     }
 
-    /// Every value in force as a line `key = value` with its dotted key, in the order of the keys: equal texts are
-    /// equal configurations, wherever their values were written.
+    /// Returns every value in use as a line `key = value` with its dotted key, sorted by key. Equal texts
+    /// mean equal configurations, wherever their values were written.
     #[must_use]
     pub fn values_text(&self) -> String {
         let line = |setting: &Setting| Some(format!("{} = {}\n", setting.key(), setting.value.as_ref()?));
@@ -136,10 +137,10 @@ impl Resolved {
         lines.concat()
     }
 
-    /// The configuration as TOML, every value in force, with unit and origin as comments.
+    /// Returns the configuration as TOML: every value in use, with unit and origin as comments.
     ///
-    /// Read again, it resolves to the same values: relative paths start from the working directory, and where there are
-    /// any the text says so.
+    /// The text resolves to the same values again. Relative paths start from the working directory; if there
+    /// are any, the text sets `paths` accordingly.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
@@ -166,7 +167,7 @@ impl Resolved {
             if remarks.is_empty() {
                 text.push_str(&format!("{line}\n"));
             } else {
-                // An override may hold a line break; a comment may not.
+                // An override may contain a line break; a comment may not.
                 let remark = remarks.join("; ").replace(char::is_control, " ");
                 text.push_str(&format!("{line:<36} # {remark}\n"));
             }
@@ -176,7 +177,7 @@ impl Resolved {
 }
 
 impl Setting {
-    /// The dotted key.
+    /// Returns the dotted key.
     #[must_use]
     pub fn key(&self) -> String {
         if self.section.is_empty() {
@@ -187,7 +188,7 @@ impl Setting {
     }
 }
 
-/// A path as seen from the working directory.
+/// Returns a path relative to the working directory.
 fn placed(value: Value, folder: &str) -> Value {
     match value.as_str() {
         Some(path) if !folder.is_empty() && Path::new(path).is_relative() => {
@@ -209,20 +210,21 @@ fn unknown_key(key: &str, origin: Origin, settings: &[Setting]) -> SettingsError
     SettingsError::UnknownKey { origin, nearest: nearest(key, &keys), key: key.to_owned(), known }
 }
 
-/// The known name that is spelled most alike, if one is close enough to be a slip of the hand.
+/// Returns the known name with the most similar spelling; `None` if more than a third of the letters differ.
 #[must_use]
 pub fn nearest(name: &str, known: &[String]) -> Option<String> {
     known
         .iter()
         .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
         .min_by_key(|(distance, _)| *distance)
-        // A third of the letters wrong is no slip any more.
+        // With more than a third of the letters different it is hardly a typing error.
         .filter(|(distance, _)| *distance * 3 <= name.chars().count())
         .map(|(_, candidate)| candidate.clone())
 }
 
 impl SettingsError {
-    /// An unknown name among those known at run time, with the nearest one suggested.
+    /// Creates the error for an unknown name among names known at run time, and suggests the most similar
+    /// one.
     #[must_use]
     pub fn unknown_name(origin: Origin, what: &str, found: &str, known: Vec<String>) -> Self {
         Self::UnknownName {

@@ -1,4 +1,4 @@
-//! Tests of the whole way from text to struct.
+//! Tests of all steps from text to struct.
 
 use crate::{Default, Document, Field, Kind, Resolved, Section, SettingsError};
 use serde::Deserialize;
@@ -146,7 +146,7 @@ fn broken_toml_has_line_and_column() {
     assert!(message.starts_with("a.toml:2:"), "{message}");
 }
 
-/// It would be written without its quotes, and split at its dots.
+/// Keys are written without quotes and split at their dots, so such a name would change.
 #[test]
 fn a_name_that_needs_quotes_is_refused() {
     for text in ["[fit.\"a b\"]\nx = 1\n", "\"fit.seeds\" = 1\n", "[\"\"]\n"] {

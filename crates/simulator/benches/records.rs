@@ -1,4 +1,5 @@
-//! Time of a simulated record: 25 s at 260 Hz with friction, drag and gravity, through an encoder's chain.
+//! Time of a simulated record: 25 s at 260 Hz with friction, drag and gravity, through the measurement chain
+//! of an encoder.
 
 #![allow(missing_docs, clippy::expect_used, reason = "a benchmark")]
 

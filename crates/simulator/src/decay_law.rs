@@ -1,8 +1,8 @@
-//! How the amplitude of a free oscillation falls from one turning point to the next.
+//! Decay laws: the amplitude of a free oscillation from one turning point to the next.
 
 use std::f64::consts::PI;
 
-/// A law of decay with a closed form at the turning points.
+/// Law of decay with a closed form at the turning points.
 ///
 /// ```
 /// use simulator::DecayLaw;
@@ -19,8 +19,8 @@ pub enum DecayLaw {
         /// λ, in 1/s, at least 0.
         decay_rate: f64,
     },
-    /// Dry (Coulomb) friction and viscous damping: between two turning points the motion is a damped
-    /// cosine about a center shifted by the dead zone x_c, so that with ρ = exp(−λT/2)
+    /// Dry (Coulomb) friction and viscous damping. Between two turning points the motion is a damped cosine
+    /// about a center shifted by the dead zone x_c, so that with ρ = exp(−λT/2)
     ///
     /// A₍ₙ₊₁₎ = ρ·Aₙ − Δ, Δ = x_c·(1 + ρ), exact at the turning points half a period T/2 apart.
     ///
@@ -36,8 +36,8 @@ pub enum DecayLaw {
     ///
     /// dA/dt = −λA − qA² with q = 4βω/(3π), A(t) = λA₀ / ((λ + qA₀)·exp(λt) − qA₀).
     ///
-    /// The relative error of A is of the order of the damping per radian, (λ + qA₀)/ω, however long the
-    /// decay.
+    /// The relative error of A is of the order of the damping per radian, (λ + qA₀)/ω, for a decay of any
+    /// length.
     ///
     /// # Reference
     /// A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations (Wiley 1979), section 3.3.
@@ -50,8 +50,8 @@ pub enum DecayLaw {
 }
 
 impl DecayLaw {
-    /// λ of the viscous part, in 1/s: what the rate falls to where the amplitude is large (dry friction) or
-    /// small (quadratic drag).
+    /// Returns λ of the viscous part, in 1/s: the limit of the decay rate for large amplitude (dry friction)
+    /// or small amplitude (quadratic drag).
     #[must_use]
     pub fn viscous_rate(&self) -> f64 {
         match *self {
@@ -61,7 +61,8 @@ impl DecayLaw {
         }
     }
 
-    /// Half-width of the dead zone, within which a turning point is the last: 0 without dry friction.
+    /// Returns the half-width of the dead zone, in the amplitude's unit; a turning point within it is the
+    /// last. 0 without dry friction.
     #[must_use]
     pub fn dead_zone(&self) -> f64 {
         match *self {
@@ -70,11 +71,11 @@ impl DecayLaw {
         }
     }
 
-    /// The amplitude at turning point `number`, counted from 0, half a `period_s` apart, from `initial` at
-    /// turning point 0.
+    /// Returns the amplitude at turning point `number`, counted from 0, half a `period_s` apart, from
+    /// `initial` at turning point 0.
     ///
-    /// With dry friction it falls through the dead zone to negative values: what lies below
-    /// [`DecayLaw::dead_zone`] does not happen.
+    /// With dry friction the value falls through the dead zone to negative values: amplitudes below
+    /// [`DecayLaw::dead_zone`] do not occur.
     #[must_use]
     pub fn amplitude(&self, initial: f64, period_s: f64, number: usize) -> f64 {
         let half_periods = number as f64;
@@ -85,7 +86,7 @@ impl DecayLaw {
                 let exponent = 0.5 * decay_rate * period_s;
                 let ratio = (-exponent).exp();
                 let decrement = dead_zone * (1.0 + ratio);
-                // (1 − ρⁿ)/(1 − ρ), which is n where there is no viscous damping.
+                // (1 − ρⁿ)/(1 − ρ), which is n without viscous damping.
                 let sum = if exponent > 0.0 {
                     (-exponent * half_periods).exp_m1() / (-exponent).exp_m1()
                 } else {
@@ -94,14 +95,14 @@ impl DecayLaw {
                 initial * (-exponent * half_periods).exp() - decrement * sum
             }
             Self::ViscousQuadratic { decay_rate, quadratic_rate } => {
-                // (exp(λt) − 1)/λ, which is t where there is no viscous damping.
+                // (exp(λt) − 1)/λ, which is t without viscous damping.
                 let growth = if decay_rate > 0.0 { (decay_rate * time).exp_m1() / decay_rate } else { time };
                 initial / ((decay_rate * time).exp() + quadratic_rate * initial * growth)
             }
         }
     }
 
-    /// The law as a reader knows it, in symbols.
+    /// Returns the law in symbols.
     #[must_use]
     pub fn equation(&self) -> &'static str {
         match self {
@@ -111,7 +112,7 @@ impl DecayLaw {
         }
     }
 
-    /// Returns how exact the closed form is, in words.
+    /// Returns the exactness of the closed form, in words.
     #[must_use]
     pub fn exactness(&self) -> &'static str {
         match self {
@@ -121,8 +122,8 @@ impl DecayLaw {
         }
     }
 
-    /// The damping per radian at the start, (λ + qA₀)·T/(2π): the order of the averaged law's relative
-    /// error; `None` for a law that is exact.
+    /// Returns the damping per radian at the start, (λ + qA₀)·T/(2π), which is the order of the averaged
+    /// law's relative error; `None` for a law that is exact.
     #[must_use]
     pub fn averaging_error(&self, initial: f64, period_s: f64) -> Option<f64> {
         match *self {
@@ -202,7 +203,7 @@ mod tests {
         }
     }
 
-    /// The step and the differential equation of the documentation.
+    /// The recursion and the differential equation of the documentation.
     #[test]
     fn the_laws_obey_their_equations() {
         let (initial, period) = (0.5, 0.29);

@@ -1,4 +1,4 @@
-//! From a plan to systems and their records.
+//! Drawing of systems and their records from a plan.
 
 use crate::generate::generate;
 use crate::generation_error::GenerationError;
@@ -11,21 +11,21 @@ use record::Record;
 use seed::Seed;
 use truth::{Draws, Sealed, TRUTH_SCHEMA, Truth};
 
-/// A drawn system: what is believed of it, and what generates each of its records.
+/// Drawn system: the believed nominal oscillator, and the truth that generates each of its records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnSystem {
-    /// Nominal oscillator that a user would believe in: without the effects, off by the
-    /// calibration error.
+    /// Nominal oscillator that a user would believe in: without the effects, and off by the calibration
+    /// error.
     pub nominal: Nominal,
     /// Truths, one for each record; they differ in start and draws only.
     pub truths: Vec<Truth>,
 }
 
 impl Plan {
-    /// The system with a number from 0. It depends on the seed and the number alone.
+    /// Draws the system with a number from 0. It depends on the seed and the number alone.
     ///
     /// # Errors
-    /// [`GenerationError::Dynamics`] where the drawn numbers contradict each other.
+    /// Returns [`GenerationError::Dynamics`] if the drawn numbers contradict each other.
     pub fn draw(&self, system: usize) -> Result<DrawnSystem, GenerationError> {
         let branch = ["simulate".to_owned(), format!("system {system}")];
         let seed = branch.iter().fold(Seed::new(self.seed), |node, name| node.child(name));
@@ -59,10 +59,10 @@ impl Plan {
         Ok(DrawnSystem { nominal: self.believed(&nominal, &seed.child("calibration"))?, truths })
     }
 
-    /// A record of a system, with its truth under seal; both numbers from 0.
+    /// Generates a record of a system, with its truth under seal; both numbers from 0.
     ///
     /// # Errors
-    /// As [`Plan::draw`] and [`generate`].
+    /// Returns the same errors as [`Plan::draw`] and [`generate`], and [`GenerationError::NoSuchRecord`].
     pub fn record(&self, system: usize, record: usize) -> Result<(Record, Sealed<Truth>), GenerationError> {
         let drawn = self.draw(system)?;
         let truth = drawn.truths.get(record).ok_or(GenerationError::NoSuchRecord { record })?;
@@ -80,9 +80,9 @@ impl Plan {
         })
     }
 
-    /// The effects of one system: each with its probability, or so many as are asked for, drawn without
-    /// replacement with the probabilities as weights (Efraimidis, Spirakis, Information Processing
-    /// Letters 97 (2006) 181: the largest u^(1/w)).
+    /// Draws the effects of one system: each with its probability, or as many as requested, drawn without
+    /// replacement with the probabilities as weights (Efraimidis, Spirakis, Information Processing Letters 97
+    /// (2006) 181: the largest u^(1/w)).
     fn draw_effects(&self, seed: &Seed) -> Result<Vec<Active>, GenerationError> {
         let chance = |planned: &PlannedEffect| {
             seed.child(planned.effect.id()).child("presence").generator().random::<f64>()
@@ -115,7 +115,7 @@ impl Plan {
         let is = actual.coefficients();
         let off = self.calibration;
         let relative = |name, value: f64, deviation| {
-            // A number that is 0 is known to be: there is nothing to calibrate.
+            // A coefficient of 0 is known to be 0: there is nothing to calibrate.
             if value == 0.0 { value } else { believed(name, value, deviation * value, &Range::POSITIVE) }
         };
         Ok(actual.with_coefficients(Coefficients {

@@ -1,4 +1,4 @@
-//! Envelopes of a law of decay, with scatter drawn on them.
+//! Envelopes of a decay law, with scatter drawn on them.
 
 use crate::decay_law::DecayLaw;
 use crate::error::SimulationError;
@@ -7,8 +7,8 @@ use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 use std::f64::consts::TAU;
 
-/// Smallest amplitude that is simulated under additive scatter, in its standard deviations: where the
-/// recommended pipeline, too, ends an envelope. Draws that turn it negative do not occur (6e-16 each).
+/// Smallest amplitude that is simulated with additive scatter, in its standard deviations. The recommended
+/// pipeline ends an envelope there too. Draws that turn it negative do not occur (6e-16 each).
 pub const SMALLEST_IN_SCATTER: f64 = 8.0;
 
 /// Independent Gaussian scatter of the peaks.
@@ -21,14 +21,14 @@ pub enum Scatter {
     Logarithm(f64),
 }
 
-/// An oscillation whose peaks are drawn.
+/// Oscillation whose peaks are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnvelopeSimulation {
-    /// The law of decay.
+    /// Decay law.
     pub law: DecayLaw,
     /// Amplitude of the first peak, above 0.
     pub initial_amplitude: f64,
-    /// Period, in seconds; the peaks of both sides lie half of it apart.
+    /// Period, in seconds; the peaks of both sides are half of it apart.
     pub period_s: f64,
     /// Number of peaks, at least 3.
     pub peaks: usize,
@@ -36,7 +36,7 @@ pub struct EnvelopeSimulation {
     pub scatter: Scatter,
 }
 
-/// The noise-free peaks: what a prediction is scored against, and no estimator sees.
+/// Noise-free peaks, which a prediction is scored against and no estimator reads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopeTruth {
     times_s: Vec<f64>,
@@ -46,11 +46,11 @@ pub struct EnvelopeTruth {
 }
 
 impl EnvelopeSimulation {
-    /// The noise-free peaks.
+    /// Computes the noise-free peaks.
     ///
     /// # Errors
-    /// [`SimulationError`]: a parameter out of its range, a motion that comes to rest before the last peak,
-    /// or peaks that additive scatter would drown.
+    /// Returns [`SimulationError`] for a parameter out of its range, a motion that comes to rest before the
+    /// last peak, or peaks that additive scatter would drown.
     pub fn truth(&self) -> Result<EnvelopeTruth, SimulationError> {
         let (size, scatter_name) = match self.scatter {
             Scatter::Amplitude(size) => (size, "the scatter of the amplitude"),
@@ -95,22 +95,22 @@ impl EnvelopeSimulation {
 }
 
 impl EnvelopeTruth {
-    /// Times of the peaks after the first, in seconds.
+    /// Returns the times of the peaks after the first, in seconds.
     #[must_use]
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    /// ln A of the noise-free peaks, the amplitude in its own unit.
+    /// Returns ln A of the noise-free peaks, with the amplitude in its own unit.
     #[must_use]
     pub fn log_amplitudes(&self) -> Vec<f64> {
         self.amplitudes.iter().map(|amplitude| amplitude.ln()).collect()
     }
 
-    /// Peaks with scatter drawn from `seed`: all that an estimator gets to see.
+    /// Draws the peaks with scatter from `seed`. An estimator gets nothing else.
     ///
     /// # Errors
-    /// [`SimulationError::Envelope`] for fewer than three peaks, or logarithms that are not finite.
+    /// Returns [`SimulationError::Envelope`] for fewer than three peaks, or logarithms that are not finite.
     pub fn draw(&self, seed: &Seed) -> Result<Envelope, SimulationError> {
         let mut generator = seed.child("scatter").generator();
         let logs = self
@@ -174,7 +174,7 @@ mod tests {
                 }
             }
             let mean = squares.iter().sum::<f64>() / (draws as usize * logs.len()) as f64;
-            // A mean of 24 000 squares of mean 1 and variance 2; the logarithm's own bend adds 1 %.
+            // A mean of 24 000 squares of mean 1 and variance 2; the curvature of the logarithm adds 1 %.
             assert!((mean - 1.0).abs() < 0.05, "{mean}");
         }
     }

@@ -1,8 +1,8 @@
-//! Why there is nothing to simulate.
+//! Errors of a simulated envelope.
 
 use thiserror::Error;
 
-/// Why there is nothing to simulate.
+/// Error for an envelope that cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulationError {
     /// Dry friction ends the motion before the last peak.
@@ -14,37 +14,37 @@ pub enum SimulationError {
     ComesToRest {
         /// Number of the last turning point, from 1.
         reached: usize,
-        /// Turning points asked for.
+        /// Number of turning points requested.
         peaks: usize,
-        /// The amplitude there.
+        /// Amplitude at the last turning point.
         amplitude: f64,
         /// Half-width of the dead zone, in the amplitude's unit.
         dead_zone: f64,
     },
-    /// An amplitude so small that additive scatter could turn it negative.
+    /// An amplitude is so small that additive scatter could turn it negative.
     #[error(
         "the smallest amplitude, {smallest:.3e}, is {ratio:.1} standard deviations of the scatter; a sensor's \
          envelope ends at {least}: ask for fewer peaks or less scatter"
     )]
     BelowTheScatter {
-        /// The smallest noise-free amplitude.
+        /// Smallest noise-free amplitude.
         smallest: f64,
-        /// It in standard deviations of the scatter.
+        /// Smallest amplitude in standard deviations of the scatter.
         ratio: f64,
-        /// The least that is simulated.
+        /// Smallest ratio that is simulated.
         least: f64,
     },
-    /// Parameters that make no envelope.
+    /// A parameter is out of its range.
     #[error("{name} is {value:e}; expected {expected}")]
     Parameter {
-        /// The parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
-        /// What it has to be.
+        /// Admissible values.
         expected: &'static str,
     },
-    /// The drawn peaks make no envelope.
+    /// The drawn peaks do not form an envelope.
     #[error("the drawn peaks make no envelope: {0}")]
     Envelope(#[from] envelope::EnvelopeError),
 }

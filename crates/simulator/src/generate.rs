@@ -1,4 +1,4 @@
-//! From a truth to a record.
+//! Generation of a record from its truth.
 
 use crate::generation_error::GenerationError;
 use dynamics::chain::Observed;
@@ -8,20 +8,20 @@ use record::{Quantity, Record};
 use seed::Seed;
 use truth::{Draws, Truth};
 
-/// Most decimals of a stamp or value: more would be rounding noise of a double around 1000.
+/// Maximum number of decimals of a stamp or value: more would be rounding noise of a double around 1000.
 pub const MOST_DECIMALS: u8 = 12;
 
-/// Longest record. At 16 bytes a sample and column it fits into a gigabyte.
+/// Maximum number of samples of a record. At 16 bytes a sample and column it fits into a gigabyte.
 pub const MOST_SAMPLES: usize = 10_000_000;
 
-/// The record of a truth: the same bits whenever and wherever it is asked for.
+/// Generates the record of a truth: the same bits at every call and on every machine.
 ///
-/// The motion comes from the reference integrator, so its error is far below any noise. Stamps and values are
-/// rounded to their decimals: what the record holds is what its file says.
+/// The motion comes from the reference integrator, so that its error is far below any noise. Stamps and
+/// values are rounded to their decimals: the record holds exactly the numbers of its file.
 ///
 /// # Errors
-/// [`GenerationError`]: an impossible sampling, motion or measuring chain, or so many lost samples that no
-/// record is left.
+/// Returns [`GenerationError`] for an impossible sampling, motion or measurement chain, or if so many samples
+/// are lost that no record remains.
 pub fn generate(truth: &Truth) -> Result<Record, GenerationError> {
     let sampling = &truth.sampling;
     let refused = |what, value, expected| Err(GenerationError::Sampling { what, value, expected });
@@ -36,7 +36,7 @@ pub fn generate(truth: &Truth) -> Result<Record, GenerationError> {
         return refused("number of decimals", f64::from(most), "0 to 12");
     }
     let times: Vec<f64> = (0..sampling.samples).map(|index| index as f64 / sampling.rate_hz).collect();
-    // Fewer than two samples are refused below.
+    // Fewer than two samples are rejected above.
     let duration = times.last().copied().unwrap_or_default();
     let input = truth
         .excitation
@@ -64,12 +64,12 @@ pub fn generate(truth: &Truth) -> Result<Record, GenerationError> {
     Ok(Record::new(stamps, values, input, quantity(observed), unit(observed, coordinate))?)
 }
 
-/// The node of the tree of seeds that a record draws from.
+/// Returns the node of the seed tree that a record draws from.
 fn branch(draws: &Draws) -> Seed {
     draws.branch.iter().fold(Seed::new(draws.seed), |node, name| node.child(name))
 }
 
-/// The double nearest to a number's decimal notation.
+/// Returns the double nearest to a number's decimal notation.
 fn round(value: f64, decimals: u8) -> f64 {
     let scale = 10_f64.powi(i32::from(decimals));
     let scaled = value * scale;
@@ -96,10 +96,10 @@ fn unit(observed: Observed, coordinate: Coordinate) -> &'static str {
     }
 }
 
-/// A simulated record as the text of a CSV file, labeled as simulated, with the given decimals.
+/// Returns a simulated record as the text of a CSV file, labeled as simulated, with the given decimals.
 ///
-/// Columns: `time_s`; `angle_rad` or, for other quantities, `position_m`, `velocity_rad_s` and so on; `torque_nm`
-/// where there is an input. Read again, it gives the record to the bit.
+/// Columns: `time_s`; `angle_rad` or, for other quantities, `position_m`, `velocity_rad_s` and so on;
+/// `torque_nm` if there is an input. Reading the text again yields the same record to the bit.
 #[must_use]
 pub fn csv_text(record: &Record, stamp_decimals: u8, value_decimals: u8) -> String {
     use std::fmt::Write;
@@ -119,7 +119,7 @@ pub fn csv_text(record: &Record, stamp_decimals: u8, value_decimals: u8) -> Stri
     // Without an input there is no column for it.
     let mut inputs = record.input().unwrap_or_default().iter();
     for (stamp, value) in record.stamps_s().iter().zip(record.values()) {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = match inputs.next() {
             Some(input) => writeln!(text, "{stamp:.stamps$},{value:.values$},{input:.values$}"),
             None => writeln!(text, "{stamp:.stamps$},{value:.values$}"),

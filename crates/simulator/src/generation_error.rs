@@ -1,33 +1,33 @@
-//! Why a record could not be simulated.
+//! Errors of a simulated record.
 
 use dynamics::DynamicsError;
 use record::Fault;
 use thiserror::Error;
 use truth::SealError;
 
-/// Why a record could not be simulated.
+/// Error for a record that cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GenerationError {
-    /// The system, its motion or its measuring chain is impossible.
+    /// The system, its motion or its measurement chain is impossible.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
-    /// Remainder of the measurement chain that is no record.
+    /// The samples that the measurement chain leaves do not form a record.
     #[error("what is left is no record: {0}")]
     Record(#[from] Fault),
-    /// A sampling that is none.
+    /// The sampling is invalid.
     #[error("the sampling's {what} is {value}; expected {expected}")]
     Sampling {
-        /// Which of its numbers.
+        /// Name of the wrong number.
         what: &'static str,
-        /// Its value.
+        /// Value of that number.
         value: f64,
-        /// What is admitted.
+        /// Admissible values.
         expected: &'static str,
     },
-    /// A record beyond those of a system.
+    /// The system has no record with this number.
     #[error("a system has no record {record}; numbers run from 0 to one below simulate.records")]
     NoSuchRecord {
-        /// The number asked for.
+        /// Number requested.
         record: usize,
     },
     /// The truth could not be sealed.

@@ -1,4 +1,4 @@
-//! What a configuration of a simulation may hold, as JSON Schema.
+//! JSON Schema of a simulation's configuration.
 
 use crate::number::NumberKey;
 use crate::plan::{
@@ -10,12 +10,12 @@ use dynamics::{REGISTRY, Range, UNNAMED};
 use serde_json::{Map, Value, json};
 use settings::{Default, Field, Kind, json_schema};
 
-/// JSON Schema of `task = "simulate"`: units are those of an angle with a known inertia.
+/// Returns the JSON Schema of `task = "simulate"`; its units are those of an angle with a known inertia.
 #[must_use]
 pub fn simulate_schema() -> Value {
     let units = ConfiguredUnits::of_document(&settings::Document::default(), "nominal");
     let mut root = json_schema::tables(SECTIONS);
-    // The nominal oscillator stands in a table of its own, or at the top.
+    // The nominal oscillator has a table of its own, or is at the top.
     for table in ["nominal", ""] {
         for field in &NOMINAL_CHOICES {
             json_schema::insert(&mut root, table, field.key, json_schema::field(field));
@@ -54,7 +54,7 @@ pub fn simulate_schema() -> Value {
     json_schema::with_base(root, required)
 }
 
-/// A table of `[[effects]]`, its parameters by its id.
+/// Returns the schema of a table of `[[effects]]`, whose parameters depend on its id.
 fn effect(units: ConfiguredUnits) -> Value {
     let ids: Vec<&str> = REGISTRY.iter().chain(UNNAMED).map(|effect| effect.id()).collect();
     let mut table = json_schema::table(&[PROBABILITY]);
@@ -88,7 +88,7 @@ fn add(root: &mut Value, table: &str, keys: &[NumberKey]) {
     }
 }
 
-/// A number that may be drawn: a value, or a prior.
+/// Returns the schema of a number that may be drawn: a value, or a prior.
 fn number(key: &NumberKey) -> Value {
     let fixed = Field {
         key: key.key,

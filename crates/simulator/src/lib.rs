@@ -1,12 +1,12 @@
-//! Simulated decays whose truth is known, kept apart from what estimators see.
+//! Simulated decays whose truth is known and kept apart from what estimators read.
 //!
-//! A [`Plan`] holds priors of systems, starts and measuring chains, as a configuration states them. Drawing from
-//! it gives records, each with its sealed [`truth::Truth`]; a truth gives its record again to the bit
-//! ([`generate`]).
+//! A [`Plan`] holds priors of systems, starts and measurement chains, as a configuration states them. Drawing
+//! from it yields records, each with its sealed [`truth::Truth`]; [`generate`] computes the same record from
+//! a truth again, to the bit.
 //!
-//! A [`DecayLaw`] gives the noise-free turning points of an oscillator ([`EnvelopeTruth`]); drawing scatter
-//! on them gives an [`Envelope`](envelope::Envelope), which is all that an estimator is handed. Nothing
-//! leads from an envelope back to its truth, and no estimator's crate may depend on this one.
+//! A [`DecayLaw`] yields the noise-free turning points of an oscillator ([`EnvelopeTruth`]). Drawing scatter
+//! on them yields an [`Envelope`](envelope::Envelope), which is all that an estimator gets. Nothing leads
+//! from an envelope back to its truth, and no estimator's crate may depend on this one.
 //!
 //! # Example
 //! A record of a decay with dry friction, as a configuration states it, and the same record from its truth:

@@ -1,4 +1,4 @@
-//! A number of a configuration that may be drawn: `torque = 7e-5`, or `torque = { from = 1e-5, to = 1e-4 }`.
+//! Number of a configuration that may be drawn: `torque = 7e-5`, or `torque = { from = 1e-5, to = 1e-4 }`.
 
 use crate::prior::Prior;
 use crate::schema::{PLAIN, PRIOR};
@@ -7,7 +7,7 @@ use seed::Seed;
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, SettingsError};
 
-/// The declaration of a number that may be drawn.
+/// Declaration of a number that may be drawn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NumberKey {
     pub(crate) key: &'static str,
@@ -17,7 +17,7 @@ pub(crate) struct NumberKey {
     pub(crate) meaning: &'static str,
 }
 
-/// A number that may be drawn, as configured.
+/// Number that may be drawn, as configured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Number {
     key: &'static str,
@@ -35,13 +35,13 @@ struct PriorKeys {
 }
 
 impl Number {
-    /// A draw from the number's own branch.
+    /// Draws a value from the number's own branch of the seed tree.
     pub(crate) fn draw(&self, seed: &Seed) -> f64 {
         self.prior.draw(&self.range, &mut seed.child(self.key).generator())
     }
 }
 
-/// The dotted name of a key in a table; the table at the top has no name.
+/// Returns the dotted name of a key in a table; the table at the top has no name.
 pub(crate) fn dotted(table: &str, key: &str) -> String {
     if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
 }
@@ -50,7 +50,7 @@ fn is_drawn(document: &Document, table: &str, key: &NumberKey) -> bool {
     document.tables_below(table).iter().any(|name| name == key.key)
 }
 
-/// The fields of a table's numbers that are given as values, or not at all; and the sections of those that
+/// Returns the fields of those numbers in a table that are values or absent, and the sections of those that
 /// are drawn.
 pub(crate) fn declare(
     document: &Document,
@@ -65,7 +65,7 @@ pub(crate) fn declare(
             let prior = PRIOR.iter().map(|field| Field { unit: unit(field), ..*field });
             sections.push((dotted(table, key.key), prior.collect()));
         } else {
-            // A kind's bounds are included.
+            // The bounds of a `Kind` are inclusive.
             let min = match key.range {
                 Range { minimum: 0.0, closed: false, .. } => f64::MIN_POSITIVE,
                 Range { minimum, .. } => minimum,
@@ -83,7 +83,7 @@ pub(crate) fn declare(
     (fields, sections)
 }
 
-/// As [`read`], for a table whose numbers are known by their places.
+/// Does the same as [`read`] for a table with a fixed number of keys.
 pub(crate) fn read_all<const N: usize>(
     document: &Document,
     resolved: &Resolved,
@@ -125,7 +125,7 @@ fn read_value(
     within(document, &name, key, resolved.float(&name)?)
 }
 
-/// Refuses an end that an open range leaves out, which the declaration of a key cannot say.
+/// Rejects an end that an open range excludes, which the declaration of a key cannot express.
 fn within(document: &Document, name: &str, key: &NumberKey, value: f64) -> Result<f64, SettingsError> {
     if key.range.contains(value) {
         return Ok(value);
@@ -180,13 +180,13 @@ fn read_prior(
     }
 }
 
-/// Where a key, or the first one that starts with a prefix, was written.
+/// Returns the origin of a key, or of the first one that starts with a prefix.
 fn origin(document: &Document, prefix: &str) -> Origin {
     let found = document.leaves().iter().find(|leaf| leaf.key.starts_with(prefix));
     found.map_or(Origin::Default, |leaf| leaf.origin.clone())
 }
 
-/// The error for a value that is refused here and not by its declaration.
+/// Returns the error for a value that is rejected here and not by its declaration.
 pub(crate) fn bad_value(
     origin: Origin,
     key: &str,

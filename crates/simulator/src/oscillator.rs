@@ -1,4 +1,4 @@
-//! The equation of motion itself, integrated step by step: what the closed forms are tested against.
+//! Direct integration of the equation of motion, against which the closed forms are tested.
 
 /// ẍ + 2λẋ + βẋ|ẋ| + ω²x + ω²·x_c·sgn ẋ = 0.
 pub(crate) struct Oscillator {
@@ -12,7 +12,7 @@ pub(crate) struct Oscillator {
 }
 
 impl Oscillator {
-    /// Times and amplitudes of `count` turning points from rest at `initial`.
+    /// Returns times and amplitudes of `count` turning points from rest at `initial`.
     pub(crate) fn turning_points(&self, initial: f64, count: usize) -> Vec<(f64, f64)> {
         let step = 2e-4 / self.omega;
         let (mut time, mut position) = (0.0, initial);
@@ -43,7 +43,7 @@ impl Oscillator {
         -drag - self.omega.powi(2) * position - friction
     }
 
-    /// The classical Runge–Kutta step of fourth order.
+    /// Makes a classical Runge–Kutta step of fourth order.
     fn step(&self, x: f64, v: f64, direction: f64, h: f64) -> (f64, f64) {
         let f = |x: f64, v: f64| (v, self.acceleration(x, v, direction));
         let a = f(x, v);

@@ -1,4 +1,4 @@
-//! What a configuration says of the systems and records to be drawn.
+//! Plan of a simulation: the systems and records to be drawn, as configured.
 
 use crate::number::{Number, NumberKey, bad_value, declare, dotted, read, read_all};
 use crate::schema::{PLAIN, SECTIONS};
@@ -8,7 +8,7 @@ use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError};
 use truth::{Excitation, Sampling, Waveform};
 
-/// A simulation as configured: priors of systems, starts and measuring chains, each key checked.
+/// Simulation as configured: priors of systems, starts and measurement chains, each key checked.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// Start of the run folder's name.
@@ -17,9 +17,9 @@ pub struct Plan {
     pub seed: u64,
     /// Number of systems to draw.
     pub systems: usize,
-    /// Number of records of each.
+    /// Number of records of each system.
     pub records: usize,
-    /// Every value in force.
+    /// Every value in force, whether given or by default.
     pub resolved: Resolved,
     pub(crate) effects_per_system: Option<usize>,
     pub(crate) nominal: PlannedNominal,
@@ -32,7 +32,7 @@ pub struct Plan {
     pub(crate) calibration: Calibration,
 }
 
-/// The nominal oscillator: inertia, damping, stiffness, rest angle, input gain.
+/// Nominal oscillator: inertia, damping, stiffness, rest angle, input gain.
 #[derive(Debug, Clone)]
 pub(crate) struct PlannedNominal {
     pub(crate) coefficients: [Number; 5],
@@ -40,7 +40,7 @@ pub(crate) struct PlannedNominal {
     pub(crate) sensor_resolution: Option<f64>,
 }
 
-/// An effect that a system may have.
+/// Effect that a system may have.
 #[derive(Debug, Clone)]
 pub(crate) struct PlannedEffect {
     pub(crate) effect: Effect,
@@ -48,7 +48,7 @@ pub(crate) struct PlannedEffect {
     pub(crate) parameters: Vec<Number>,
 }
 
-/// Standard deviations of what is believed about what is; relative but for the rest angle.
+/// Standard deviations of the believed coefficients about the true ones; relative, except for the rest angle.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Calibration {
@@ -203,12 +203,12 @@ pub(crate) fn parameter_keys(description: &Description, units: ConfiguredUnits) 
 }
 
 impl Plan {
-    /// Checks a document, overrides applied.
+    /// Checks a document with its overrides applied, and creates the plan.
     ///
-    /// The nominal oscillator stands in `[nominal]`, or, as in a plain `nominal.toml`, at the top.
+    /// The nominal oscillator is in `[nominal]`, or at the top as in a plain `nominal.toml`.
     ///
     /// # Errors
-    /// [`SettingsError`], with file, line and column or the override that caused it.
+    /// Returns [`SettingsError`], with file, line and column or the override that caused it.
     pub fn resolve(document: &Document) -> Result<Self, SettingsError> {
         let nominal_table = if document.get("inertia").is_some() { "" } else { "nominal" };
         let units = ConfiguredUnits::of_document(document, nominal_table);
@@ -255,19 +255,19 @@ impl Plan {
         })
     }
 
-    /// The effects that a system may have.
+    /// Returns the effects that a system may have.
     pub fn effects(&self) -> impl Iterator<Item = Effect> + '_ {
         self.effects.iter().map(|planned| planned.effect)
     }
 
-    /// Sampling and notation of every record.
+    /// Returns sampling and notation of every record.
     #[must_use]
     pub fn sampling(&self) -> Sampling {
         self.sampling
     }
 }
 
-/// The units that numbers are in, for messages and comments: per inertia where that is given as exactly 1.
+/// Units of the numbers, for messages and comments: per inertia if the inertia is given as exactly 1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ConfiguredUnits {
     units: Units,
@@ -299,7 +299,7 @@ impl ConfiguredUnits {
     }
 }
 
-/// Every section with its keys, where numbers may be drawn and effects have parameters of their own.
+/// Returns every section with its keys, including numbers that may be drawn and parameters of effects.
 fn declared(
     document: &Document,
     nominal_table: &str,
@@ -328,7 +328,7 @@ fn declared(
     sections
 }
 
-/// Refuses a number of effects a system that the list of them cannot give.
+/// Rejects a number of effects per system that exceeds the list of effects.
 fn enough_effects(
     document: &Document,
     effects: &[PlannedEffect],
@@ -342,7 +342,7 @@ fn enough_effects(
     Err(bad_value(origin, key, wanted.to_string(), expected, ""))
 }
 
-/// The tables `[[effects]]`, each with the effect that it names.
+/// Returns the tables `[[effects]]`, each with the effect that it names.
 fn named_effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsError> {
     let mut found: Vec<(String, Effect)> = Vec::new();
     for table in document.tables_below("effects") {
@@ -374,7 +374,7 @@ fn sampling(resolved: &Resolved) -> Result<Sampling, SettingsError> {
     let keys: RecordKeys = resolved.section("record")?;
     Ok(Sampling {
         rate_hz: keys.rate_hz,
-        // Generating refuses what is too many or too few.
+        // `generate` rejects too many or too few samples.
         samples: (keys.rate_hz * keys.seconds).round().min(1e15) as usize,
         first_stamp_s: keys.first_stamp_s,
         stamp_decimals: keys.stamp_decimals,

@@ -1,15 +1,15 @@
-//! What is believed of a number before it is drawn.
+//! Prior of a number that is drawn.
 
 use dynamics::Range;
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 
-/// The distribution that a number of a simulated system is drawn from.
+/// Distribution that a number of a simulated system is drawn from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Prior {
-    /// Always the same.
+    /// Always the same value.
     Fixed(f64),
     /// Uniform between two ends.
     Uniform {
@@ -18,29 +18,29 @@ pub enum Prior {
         /// Upper end.
         to: f64,
     },
-    /// Its logarithm is uniform between those of two ends, both above 0.
+    /// Uniform in the logarithm, between two ends above 0.
     LogUniform {
         /// Lower end.
         from: f64,
         /// Upper end.
         to: f64,
     },
-    /// Normal, cut off where the number has no meaning.
+    /// Normal, truncated to the number's range.
     Normal {
-        /// Mean before the cut.
+        /// Mean before the truncation.
         mean: f64,
-        /// Standard deviation before the cut.
+        /// Standard deviation before the truncation.
         deviation: f64,
     },
 }
 
-/// Most draws of a normal prior until one falls into the range. A configuration is held to a mean inside and a
-/// deviation up to the range's width, so that at worst 0.34 of the draws fall into it and so many fail once in
-/// 10¹⁸ times.
+/// Maximum number of draws of a normal prior until one falls into the range. A configuration must have a mean
+/// inside the range and a deviation up to its width. So at worst 0.34 of the draws fall into it, and all of
+/// them fail once in 10¹⁸ times.
 const MOST_DRAWS: usize = 100;
 
 impl Prior {
-    /// A draw; it lies in the range where the prior's ends, or its mean, do.
+    /// Draws a value; it lies in the range if the prior's ends, or its mean, do.
     pub fn draw<R: Rng + ?Sized>(&self, range: &Range, generator: &mut R) -> f64 {
         match *self {
             Self::Fixed(value) => value,

@@ -1,14 +1,14 @@
-//! The configuration keys of a simulation.
+//! Configuration keys of a simulation.
 
 use settings::{Default, Field, Kind, Section};
 
-/// A field without unit and source, to be refined by struct update.
+/// Field without unit and source, to be refined by struct update.
 pub(crate) const PLAIN: Field =
     Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
 const ANY: Kind = Kind::Float { min: f64::MIN, max: f64::MAX };
 
-/// The sections with fixed keys; those of the numbers that may be drawn are made in [`crate::plan`].
+/// Sections with fixed keys; those of the numbers that may be drawn are made in [`crate::plan`].
 pub(crate) const SECTIONS: &[Section<'static>] = &[
     Section { name: "", fields: TOP },
     Section { name: "simulate", fields: SIMULATE },
@@ -154,8 +154,8 @@ const RELATIVE: Field = Field {
     ..PLAIN
 };
 
-/// How far what is believed (`nominal.toml`) is off from what is. At most 0.3, so that a believed
-/// coefficient is above 0 in all but one case of a thousand, and drawn again then.
+/// Standard deviations of the believed coefficients (`nominal.toml`) about the true ones. They are at most
+/// 0.3, so that a believed coefficient is above 0 in all but one case of a thousand; it is then drawn again.
 const CALIBRATION: &[Field] = &[
     Field { key: "inertia", meaning: "Error of the inertia in nominal.toml.", ..RELATIVE },
     Field { key: "damping", meaning: "Error of the damping in nominal.toml.", ..RELATIVE },
@@ -170,7 +170,7 @@ const CALIBRATION: &[Field] = &[
     },
 ];
 
-/// The keys that a drawn number has in place of a value.
+/// Keys that a drawn number has in place of a value.
 pub(crate) const PRIOR: &[Field] = &[
     Field { key: "from", kind: ANY, meaning: "Lower end of a uniform prior.", ..PLAIN },
     Field { key: "to", kind: ANY, meaning: "Upper end of a uniform prior.", ..PLAIN },

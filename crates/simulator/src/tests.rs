@@ -1,4 +1,4 @@
-//! From configurations to records.
+//! Tests from configurations to records.
 
 use crate::{Plan, csv_text, generate, nominal_text};
 use dynamics::Nominal;
@@ -6,7 +6,7 @@ use record::{Clock, ClockChoice, ClockKind, ReadOptions, Record, read_text};
 use settings::Document;
 use std::collections::BTreeSet;
 
-/// The rig in short: an oscillator at 21.75 rad/s that rubs, seen by an encoder in bursts.
+/// The rig in short: an oscillator at 21.75 rad/s with dry friction, observed by an encoder in bursts.
 const RIG: &str = r#"
 seed = 3
 [record]
@@ -183,7 +183,7 @@ fn effects_come_with_their_probabilities() {
     assert!(having("quadratic_drag").abs_diff(200) < 40, "{}", having("quadratic_drag"));
 }
 
-/// A further effect leaves everybody else's draws alone.
+/// An additional effect does not change the draws of the others.
 #[test]
 fn a_further_effect_changes_no_other_number() {
     let text = PRIORS.replace("effects_per_system = 1\n", "");

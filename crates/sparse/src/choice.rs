@@ -1,16 +1,16 @@
-//! The choice between laws.
+//! Choice between laws.
 
 use crate::law::Law;
 use crate::scaled::Scaled;
 
-/// Scatter below this share of the spread cannot be told from the error of the quadrature.
+/// Scatter, as a share of the spread, below which it cannot be told from the error of the quadrature.
 const SMALLEST_SCATTER: f64 = 1e-6;
 
-/// The number of independent peaks that the residuals are worth, for residuals whose correlation falls
-/// as ρ^lag: N(1 − ρ)/(1 + ρ), ρ their correlation at lag 1 where that is positive.
+/// Returns the effective number of peaks for residuals whose correlation falls as ρ^lag: N(1 − ρ)/(1 + ρ),
+/// where ρ is their correlation at lag 1, or 0 if that is negative.
 ///
-/// `floor` is a variance that is added as independent, so that what the quadrature leaves of a perfect law,
-/// smooth but tiny, does not count as correlated scatter.
+/// `floor` is a variance added as independent scatter. A perfect law leaves smooth but tiny quadrature
+/// errors; with the floor they do not count as correlated scatter.
 ///
 /// Reference: Bayley, Hammersley, Journal of the Royal Statistical Society Supplement 8 (1946) 184.
 pub(crate) fn effective_peaks(residuals: &[f64], floor: f64) -> f64 {
@@ -20,18 +20,18 @@ pub(crate) fn effective_peaks(residuals: &[f64], floor: f64) -> f64 {
     residuals.len() as f64 * (1.0 - correlation) / (1.0 + correlation)
 }
 
-/// The variance below which nothing can be told.
+/// Returns the variance below which scatter cannot be told from the error of the quadrature.
 fn floor(scaled: &Scaled) -> f64 {
     (SMALLEST_SCATTER * scaled.spread).powi(2)
 }
 
-/// Bayesian information criterion with the correction for few peaks, lower is better:
-/// N ln(squares/n) + k ln N + 2k(k + 1)/(N − k − 1), n the peaks, N their effective number, k the
-/// parameters. Infinite where N ≤ k + 1.
+/// Returns the Bayesian information criterion with the correction for few peaks; lower is better: N
+/// ln(squares/n) + k ln N + 2k(k + 1)/(N − k − 1), with n the number of peaks, N their effective number and k
+/// the number of parameters. Infinite if N ≤ k + 1.
 ///
-/// Reference: Schwarz, Annals of Statistics 6 (1978) 461; the correction is that of Hurvich, Tsai,
-/// Biometrika 76 (1989) 297, as Mangan, Kutz, Brunton, Proctor, Proceedings of the Royal Society A 473
-/// (2017) 20170009 use it to choose between sparse laws.
+/// Reference: Schwarz, Annals of Statistics 6 (1978) 461. The correction is that of Hurvich, Tsai, Biometrika
+/// 76 (1989) 297. Mangan, Kutz, Brunton, Proctor, Proceedings of the Royal Society A 473 (2017) 20170009, use
+/// it to choose between sparse laws.
 pub(crate) fn criterion(law: &Law, scaled: &Scaled, effective: f64) -> f64 {
     let peaks = scaled.peaks() as f64;
     let parameters = law.parameters() as f64;
@@ -44,9 +44,9 @@ pub(crate) fn criterion(law: &Law, scaled: &Scaled, effective: f64) -> f64 {
         + 2.0 * parameters * (parameters + 1.0) / freedom
 }
 
-/// The simplest law whose criterion is within `evidence` of the best, with every law's criterion.
+/// Returns the simplest law whose criterion is within `evidence` of the best, and the criteria of all laws.
 ///
-/// `laws` from the richest to the poorest; `None` for no law.
+/// `laws` are ordered from the richest to the poorest; `None` for no law.
 pub fn choose<'a>(laws: &'a [Law], scaled: &Scaled, evidence: f64) -> Option<(&'a Law, Vec<f64>)> {
     let effective = effective_peaks(&scaled.residuals(&laws.first()?.trajectory), floor(scaled));
     let criteria: Vec<f64> = laws.iter().map(|law| criterion(law, scaled, effective)).collect();
@@ -75,7 +75,7 @@ mod tests {
     fn correlated_residuals_are_worth_fewer_peaks() {
         let alternating: Vec<f64> = (0..50).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         assert!((effective_peaks(&alternating, 0.0) - 50.0).abs() < 1e-12);
-        // Runs of three: of 23 neighboring pairs 16 agree and 7 do not.
+        // Runs of three: of 23 neighboring pairs 16 have equal signs and 7 do not.
         let runs: Vec<f64> = (0..24).map(|i| if i / 3 % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let correlation = (16.0 - 7.0) / 24.0;
         let expected = 24.0 * (1.0 - correlation) / (1.0 + correlation);

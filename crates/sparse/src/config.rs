@@ -3,7 +3,7 @@
 use crate::term::Term;
 use settings::{Default, Field, Kind, Origin, Resolved, SettingsError};
 
-/// The candidate terms.
+/// Candidate terms of a law.
 pub const LIBRARY: Field = Field {
     key: "library",
     kind: Kind::Texts { at_least: 1, at_most: 7 },
@@ -14,7 +14,7 @@ pub const LIBRARY: Field = Field {
     source: "the three dampings of a pendulum; with more terms, look-alikes are taken for them",
 };
 
-/// The evidence that a richer law needs.
+/// Evidence that a richer law needs.
 pub const EVIDENCE: Field = Field {
     key: "evidence",
     kind: Kind::Float { min: 0.0, max: 1e6 },
@@ -24,7 +24,7 @@ pub const EVIDENCE: Field = Field {
     source: "Kass, Raftery, J. Am. Stat. Assoc. 90 (1995) 773: positive evidence from 2, strong from 6",
 };
 
-/// The change at which a law has settled.
+/// Change of the trajectory at which a law has settled.
 pub const SETTLE_TOLERANCE: Field = Field {
     key: "settle_tolerance",
     kind: Kind::Float { min: 1e-13, max: 1e-2 },
@@ -34,7 +34,7 @@ pub const SETTLE_TOLERANCE: Field = Field {
     source: "a hundred times the rounding of ln A",
 };
 
-/// The budget of regressions.
+/// Budget of regressions.
 pub const MAX_STEPS: Field = Field {
     key: "max_steps",
     kind: Kind::Integer { min: 0, max: 1_000_000 },
@@ -44,16 +44,16 @@ pub const MAX_STEPS: Field = Field {
     source: "some thirty times what the shipped record takes",
 };
 
-/// The terms that a library names, each once, in the order of [`Term::ALL`]; names of no term are passed over, which
-/// [`check_library`] refuses.
+/// Returns the terms that a library names, each once, in the order of [`Term::ALL`]. Unknown names are
+/// skipped here; [`check_library`] refuses them.
 pub fn terms(library: &[String]) -> impl Iterator<Item = Term> + '_ {
     Term::ALL.into_iter().filter(|term| library.iter().any(|name| name == term.name()))
 }
 
-/// Checks that every name of a library is that of a term.
+/// Checks that every name of a library is the name of a term.
 ///
 /// # Errors
-/// [`SettingsError::UnknownName`] for a term that is not known, with the place that names it.
+/// [`SettingsError::UnknownName`] for an unknown term, with the place that names it.
 pub fn check_library(library: &[String], settings: &Resolved) -> Result<(), SettingsError> {
     let Some(unknown) = library.iter().find(|name| Term::named(name).is_none()) else { return Ok(()) };
     let mut all = settings.settings().iter();

@@ -1,11 +1,12 @@
-//! A law followed in time, with its derivatives by the coefficients.
+//! Integration of a law in time, with its derivatives by the parameters.
 //!
 //! Reference: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, 2nd ed. (Springer 1993),
 //! table II.5.2 (the method of Dormand and Prince), section II.4 (its step), section I.14 (derivatives).
 
 use crate::law::Law;
 
-/// Nodes, weights of the stages before, and the weights of the step; the last stage lies at its end.
+/// Nodes of the stages; then, for each stage, the weights of the stages before it. The last stage lies at the
+/// end of the step, and its weights are those of the step.
 const NODES: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 const STAGES: [&[f64]; 7] = [
     &[],
@@ -16,25 +17,26 @@ const STAGES: [&[f64]; 7] = [
     &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
     &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
-/// The step of order five minus that of order four.
+/// Weights of the fifth-order step minus those of the fourth-order step.
 const ERRORS: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 
-/// Largest error of a step, in ln A and as a share of a derivative by a coefficient.
+/// Largest error of a step in ln A, relative to 1 + |ln A|; then that of a derivative, relative to 1 plus its
+/// size.
 const TOLERANCE: f64 = 1e-11;
 const TOLERANCE_OF_DERIVATIVES: f64 = 1e-8;
 
-/// The first step, as a share of the record.
+/// First step, as a share of the record.
 const FIRST_STEP: f64 = 1e-3;
 
-/// A law that asks for a shorter step than this share of the time since the record began has no finite
-/// value any more.
+/// Shortest step, as a share of 1 plus the scaled time. A law that needs a shorter one has no finite value
+/// beyond.
 const SHORTEST_STEP: f64 = 1e-14;
 
-/// Most steps one way; beyond, the law is not followed.
+/// Most steps in one direction; the law is not followed further.
 const MOST_STEPS: usize = 100_000;
 
-/// Where a law has led to.
+/// State of a law that is followed in time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct State {
     /// x = ln A − mean.
@@ -44,7 +46,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// A start that is itself the first of the parameters.
+    /// Creates a start state; its value is the first of the parameters.
     pub(crate) fn start(log: f64, law: &Law) -> Self {
         let mut derivatives = vec![0.0; law.parameters()];
         if let Some(own) = derivatives.first_mut() {
@@ -74,7 +76,7 @@ impl State {
 }
 
 impl Law {
-    /// d/ds of a state: the law, and the same differentiated by every parameter.
+    /// Returns d/ds of a state: the rate of the law, and the derivatives of the rate by every parameter.
     fn slope(&self, state: &State, time: f64) -> State {
         let by_log = self.gradient(state.log);
         let own = std::iter::once(0.0)
@@ -85,7 +87,7 @@ impl Law {
         State { log: self.rate(state.log, time), derivatives }
     }
 
-    /// One step, and its error as a multiple of what is tolerated.
+    /// Takes one step; returns the new state and the error as a multiple of the tolerance.
     fn step(&self, state: &State, time: f64, step: f64) -> (State, f64) {
         let mut slopes: Vec<State> = Vec::with_capacity(STAGES.len());
         let mut next = state.clone();
@@ -105,12 +107,12 @@ impl Law {
         (next, if finite { error } else { f64::INFINITY })
     }
 
-    /// Follows the law from a state at a time to other times, all of them later or all of them earlier,
-    /// in the order they are met.
+    /// Follows the law from a state at a time to other times, which all lie later or all lie earlier, in the
+    /// order of passing them.
     ///
-    /// The steps are the law's own: what is found at a time does not depend on the other times. Where
-    /// ln A has run away in a finite time it is infinite from there on: −∞ for a motion that has come to
-    /// rest. Where the steps are used up it is NaN.
+    /// The step sizes depend on the law only: the state at one time does not depend on the other times. If ln
+    /// A diverges in a finite time, it is infinite from there on: −∞ for a motion that has come to rest. If
+    /// the steps are used up, it is NaN.
     pub(crate) fn follow(&self, from: &State, start: f64, times: &[f64]) -> Vec<State> {
         let mut found: Vec<State> = Vec::with_capacity(times.len());
         let mut rest = times.iter().copied().peekable();
@@ -129,7 +131,7 @@ impl Law {
                 }
                 (state, now) = (next, then);
             }
-            // The textbook's safety factor and bounds.
+            // Safety factor and bounds as in the textbook.
             length *= (0.9 * error.powf(-0.2)).clamp(0.2, 5.0);
             if length < SHORTEST_STEP * (1.0 + now.abs()) {
                 end = f64::INFINITY.copysign(way * self.rate(state.log, now));
@@ -155,12 +157,12 @@ mod tests {
         Scaled::of(&Envelope::new(times, logs, 6.0).unwrap()).unwrap()
     }
 
-    /// dA/ds = −viscous·A − dry − drag·A² with A = exp(x).
+    /// Law dA/ds = −viscous·A − dry − drag·A² with A = exp(x).
     fn law(scaled: &Scaled, [viscous, dry, drag]: [f64; 3]) -> Law {
         let mut law = Law::new(-viscous, Vec::new(), scaled.logs.clone(), scaled);
         for (term, wanted) in [(Term::InverseAmplitude, -dry), (Term::Amplitude, -drag)] {
             let column = Column::over(term, scaled).unwrap();
-            // The column is the term less its mean, over its deviation: put both back.
+            // A column is the term minus its mean, over its deviation; undo both.
             let (at_zero, unit) = (column.value(0.0, 0.0), column.value(1.0, 0.0));
             let deviation = term.value(1.0, 0.0) / (unit - at_zero);
             let factor = wanted * deviation;
@@ -180,7 +182,7 @@ mod tests {
 
     #[test]
     fn drag_is_followed_both_ways() {
-        // A = 1/(s/2 + 1/A(0)) for the pure drag.
+        // For pure drag A = 1/(s/2 + 1/A(0)).
         let scaled = scaled();
         let law = law(&scaled, [0.0, 0.0, 0.5]);
         let start = State::start(0.3, &law);
@@ -189,7 +191,7 @@ mod tests {
             let expected = -(0.5 * time + (-0.3_f64).exp()).ln();
             assert!((state.log - expected).abs() < 1e-9, "{time}: {} {expected}", state.log);
         }
-        // Backward it blows up at s = −2·exp(−0.3).
+        // Backward in time it diverges at s = −2·exp(−0.3).
         let found = law.follow(&start, 0.0, &[-0.5, -1.0, -1.48, -1.49]);
         let expected = |time: f64| -(0.5 * time + (-0.3_f64).exp()).ln();
         assert!((found[1].log - expected(-1.0)).abs() < 1e-9);
@@ -198,7 +200,7 @@ mod tests {
 
     #[test]
     fn dry_friction_brings_the_motion_to_rest() {
-        // A = (A(0) + d/v)·exp(−v·s) − d/v: zero at s = ln(1 + A(0)·v/d)/v.
+        // A = (A(0) + d/v)·exp(−v·s) − d/v, which is zero at s = ln(1 + A(0)·v/d)/v.
         let scaled = scaled();
         let law = law(&scaled, [0.7, 0.4, 0.0]);
         let end = (1.0_f64 + 0.7 / 0.4).ln() / 0.7;

@@ -1,22 +1,22 @@
-//! A law of the envelope's dynamics, fitted.
+//! Fitted law of the envelope's dynamics.
 
 use crate::scaled::Scaled;
 use crate::term::Term;
 
-/// A term brought to mean 0 and standard deviation 1 over the peaks, so that the coefficients of
-/// different terms can be compared with one threshold.
+/// Term standardized to mean 0 and standard deviation 1 over the peaks, so that one threshold fits the
+/// coefficients of different terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Column {
-    /// The term.
+    /// Term that is standardized.
     pub term: Term,
     mean: f64,
     deviation: f64,
 }
 
 impl Column {
-    /// Standardizes a term over the peaks of an envelope: its mean there becomes 0, its standard deviation (over n) 1.
+    /// Standardizes a term over the peaks of an envelope: mean 0 and standard deviation 1 (with divisor n).
     ///
-    /// `None` where it overflows, or where it varies by less than 1e-13 of its mean, which is rounding.
+    /// `None` if the term overflows, or if it varies by less than 1e-13 of its mean, which is rounding.
     pub fn over(term: Term, scaled: &Scaled) -> Option<Self> {
         let values = || scaled.logs.iter().zip(&scaled.times).map(|(&log, &time)| term.value(log, time));
         let count = scaled.peaks() as f64;
@@ -26,53 +26,55 @@ impl Column {
         usable.then_some(Self { term, mean, deviation })
     }
 
-    /// Standardized value, without unit, at x = `log` (ln A − mean) and s = `time` (0 at the first peak, 1 at the last).
+    /// Returns the standardized value, dimensionless, at x = `log` (ln A − mean) and s = `time` (0 at the
+    /// first peak, 1 at the last).
     pub fn value(&self, log: f64, time: f64) -> f64 {
         (self.term.value(log, time) - self.mean) / self.deviation
     }
 
-    /// Derivative of the standardized value with respect to x, at x = `log`.
+    /// Returns the derivative of the standardized value with respect to x, at x = `log`.
     pub fn derivative_by_log(&self, log: f64) -> f64 {
         self.term.gradient(log).0 / self.deviation
     }
 
-    /// Total derivative of the standardized value with respect to s, at x = `log` along a function of slope dx/ds.
+    /// Returns the total derivative of the standardized value with respect to s, at x = `log` along a
+    /// function of slope dx/ds.
     pub fn derivative(&self, log: f64, slope: f64) -> f64 {
         let (by_log, by_time) = self.term.gradient(log);
         (by_log * slope + by_time) / self.deviation
     }
 }
 
-/// A fitted law of the envelope, dx/ds = constant + Σ coefficient · column, with its trajectory.
+/// Fitted law of the envelope, dx/ds = constant + Σ coefficient · column, with its trajectory.
 ///
-/// In the scaled coordinates of [`Scaled`]: s without unit, x in natural logarithms of the amplitude.
-/// [`Self::coefficients`] gives the same law in seconds and in the record's unit.
+/// It is in the scaled coordinates of [`Scaled`]: s is dimensionless, x is in natural logarithms of the
+/// amplitude. [`Self::coefficients`] gives the same law in seconds and in the record's unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
     /// Constant part of dx/ds.
     pub constant: f64,
     /// Columns with their coefficients.
     pub terms: Vec<(Column, f64)>,
-    /// x at the peaks: one entry a peak, empty for a law whose rates alone are wanted.
+    /// x at the peaks, one entry per peak; empty for a law that is used for its rates only.
     pub trajectory: Vec<f64>,
     /// Sum of the squared differences between the peaks and the trajectory, in squared natural logarithms.
     pub squares: f64,
 }
 
 impl Law {
-    /// The law of no decay, dx/ds = 0, with a trajectory of zeros.
+    /// Creates the law of no decay, dx/ds = 0, with a trajectory of zeros.
     pub fn null(scaled: &Scaled) -> Self {
         Self::new(0.0, Vec::new(), vec![0.0; scaled.peaks()], scaled)
     }
 
-    /// A law with its trajectory, x at each peak; the sum of squares follows from it.
+    /// Creates a law from its trajectory, x at each peak, and computes the sum of squares.
     pub fn new(constant: f64, terms: Vec<(Column, f64)>, trajectory: Vec<f64>, scaled: &Scaled) -> Self {
         let squares = scaled.residuals(&trajectory).iter().map(|residual| residual * residual).sum();
         Self { constant, terms, trajectory, squares }
     }
 
-    /// This law moved a share (0 to 1) of the way toward another with the same terms in the same order: coefficients and
-    /// trajectory are interpolated linearly.
+    /// Moves this law a share (0 to 1) of the way toward another law with the same terms in the same order.
+    /// Coefficients and trajectory are interpolated linearly.
     pub fn toward(&self, other: &Self, share: f64, scaled: &Scaled) -> Self {
         debug_assert_eq!(self.terms.len(), other.terms.len(), "laws of the same terms");
         debug_assert_eq!(self.trajectory.len(), other.trajectory.len(), "laws at the same peaks");
@@ -87,44 +89,46 @@ impl Law {
         Self::new(mix(self.constant, other.constant), terms.collect(), trajectory.collect(), scaled)
     }
 
-    /// x at the first peak.
+    /// Returns x at the first peak.
     pub fn start(&self) -> f64 {
         debug_assert!(!self.trajectory.is_empty(), "an envelope has at least three peaks");
         // Never absent: asserted above.
         self.trajectory.first().copied().unwrap_or(0.0)
     }
 
-    /// Largest absolute difference in x between the trajectory and another one at the same peaks.
+    /// Returns the largest absolute difference in x between the trajectory and another one at the same peaks.
     pub fn distance(&self, trajectory: &[f64]) -> f64 {
         debug_assert_eq!(self.trajectory.len(), trajectory.len(), "trajectories at the same peaks");
         let pairs = self.trajectory.iter().zip(trajectory);
         pairs.map(|(own, other)| (own - other).abs()).fold(0.0, f64::max)
     }
 
-    /// Number of fitted parameters: the coefficient of each term, the constant, and the initial value.
+    /// Returns the number of fitted parameters: one coefficient per term, the constant, and the initial
+    /// value.
     pub fn parameters(&self) -> usize {
         2 + self.terms.len()
     }
 
-    /// Rate dx/ds at x = `log` and s = `time`.
+    /// Returns the rate dx/ds at x = `log` and s = `time`.
     pub fn rate(&self, log: f64, time: f64) -> f64 {
         self.constant
             + self.terms.iter().map(|(column, factor)| factor * column.value(log, time)).sum::<f64>()
     }
 
-    /// Derivative of the rate dx/ds with respect to x, at x = `log`.
+    /// Returns the derivative of the rate dx/ds with respect to x, at x = `log`.
     pub fn gradient(&self, log: f64) -> f64 {
         self.terms.iter().map(|(column, factor)| factor * column.derivative_by_log(log)).sum()
     }
 
-    /// Total derivative of the rate dx/ds with respect to s, at x = `log` along a function of slope dx/ds.
+    /// Returns the total derivative of the rate dx/ds with respect to s, at x = `log` along a function of
+    /// slope dx/ds.
     pub fn derivative(&self, log: f64, slope: f64) -> f64 {
         self.terms.iter().map(|(column, factor)| factor * column.derivative(log, slope)).sum()
     }
 
-    /// The law in seconds and the record's unit, as coefficients of d ln A/dt, the constant first.
+    /// Returns the coefficients of d ln A/dt in seconds and the record's unit, the constant first.
     ///
-    /// ln A and t enter as differences: ln A − mean, and t after the first peak.
+    /// ln A and t enter as differences: ln A − mean, and t minus the time of the first peak.
     pub fn coefficients(&self, scaled: &Scaled) -> Vec<(Term, f64)> {
         let constant = self.terms.iter().fold(self.constant, |sum, (column, factor)| {
             sum - factor * (column.mean + column.term.offset()) / column.deviation
@@ -142,7 +146,8 @@ impl Law {
         std::iter::once((Term::Constant, constant / scaled.span_s)).chain(others).collect()
     }
 
-    /// The law as an equation, `d ln A/dt = …`, A in the record's unit and t in seconds after the first peak.
+    /// Returns the law as an equation, `d ln A/dt = …`, with A in the record's unit and t in seconds after
+    /// the first peak.
     pub fn equation(&self, scaled: &Scaled) -> String {
         self.written(scaled, "d ln A/dt", |term| match term {
             Term::Constant => String::new(),
@@ -155,7 +160,7 @@ impl Law {
         })
     }
 
-    /// The same law for the amplitude, `dA/dt = …`, in the same units.
+    /// Returns the same law for the amplitude, `dA/dt = …`, in the same units.
     pub fn amplitude_equation(&self, scaled: &Scaled) -> String {
         self.written(scaled, "dA/dt", |term| match term {
             Term::Constant => " A".to_owned(),
@@ -183,11 +188,11 @@ impl Law {
     }
 }
 
-/// ∫₀ˢ of a function at every peak, from its values and derivatives there: the corrected trapezoid rule
-/// h/2·(f₀ + f₁) + h²/12·(f₀′ − f₁′), exact for cubics.
+/// Returns ∫₀ˢ of a function at every peak, from its values and derivatives there, by the corrected
+/// trapezoidal rule h/2·(f₀ + f₁) + h²/12·(f₀′ − f₁′), which is exact for cubics.
 ///
-/// `times`, `values` and `derivatives` have one entry per peak. Without derivatives (measured values have
-/// none) give zeros: the trapezoid rule remains.
+/// `times`, `values` and `derivatives` have one entry per peak. If there are no derivatives, as for measured
+/// values, pass zeros; the plain trapezoidal rule remains.
 ///
 /// Reference: Davis, Rabinowitz, Methods of Numerical Integration (1984), section 2.1.
 pub fn running_integral(times: &[f64], values: &[f64], derivatives: &[f64]) -> Vec<f64> {
@@ -207,7 +212,7 @@ pub fn running_integral(times: &[f64], values: &[f64], derivatives: &[f64]) -> V
         .collect()
 }
 
-/// A number with six digits.
+/// Formats a number with six digits.
 pub(crate) fn number(value: f64) -> String {
     let magnitude = value.abs().log10().floor();
     if value == 0.0 {
@@ -242,7 +247,7 @@ mod tests {
         let scaled = Scaled::of(&envelope).unwrap();
         let columns: Vec<Column> =
             Term::ALL.into_iter().filter_map(|term| Column::over(term, &scaled)).collect();
-        // The constant does not vary: it is no column.
+        // The constant does not vary, so that it gives no column.
         assert_eq!(columns.len(), Term::ALL.len() - 1);
         let terms = columns.into_iter().zip([-0.3, 0.2, 0.1, -0.4, 0.5, 0.6]).collect();
         let law = Law::new(-1.1, terms, scaled.logs.clone(), &scaled);

@@ -1,10 +1,11 @@
-//! What the sparse identification methods share: terms of a law, thresholded regression, choice among laws.
+//! Shared parts of the sparse identification methods: terms of a law, thresholded regression, choice among
+//! laws.
 //!
-//! A law d ln A/dt = c₀ + Σ cₖ θₖ is sought in a library of terms θₖ(A, t). How its coefficients are found is
-//! each method's own; what they are found for is here: the envelope in scaled coordinates ([`Scaled`]), the
-//! terms ([`Term`], standardized: [`Column`]), the law ([`Law`]), the threshold that rises from the richest law
-//! to the constant ([`Path`]), the choice among the laws on that path ([`choose`]), what is said of it
-//! ([`because`], [`model_text`]), and what it says of other times ([`predictions`]).
+//! The methods search for a law d ln A/dt = c₀ + Σ cₖ θₖ in a library of terms θₖ(A, t). Each method has its
+//! own way to find the coefficients; this crate holds the rest: the envelope in scaled coordinates
+//! ([`Scaled`]), the terms ([`Term`], standardized: [`Column`]), the law ([`Law`]), the threshold that rises
+//! from the richest law to the constant ([`Path`]), the choice among the laws on that path ([`choose`]), the
+//! report on it ([`because`], [`model_text`]), and the law's predictions at other times ([`predictions`]).
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

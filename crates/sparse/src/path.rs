@@ -1,27 +1,27 @@
-//! The path of laws.
+//! Path of laws from the richest to the constant.
 
 use crate::law::{Column, Law};
 use crate::progress::Halt;
 use crate::scaled::Scaled;
 
-/// The laws along the threshold path.
+/// Laws along a rising threshold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// Laws that settled, from the richest to the constant.
     pub laws: Vec<Law>,
-    /// The state of the last regression.
+    /// Law of the last regression.
     pub latest: Law,
-    /// Laws that did not settle.
+    /// Number of laws that did not settle.
     pub unsettled: usize,
-    /// What cut the path short.
+    /// Reason why the path was cut short; `None` if it reached the constant.
     pub halt: Option<Halt>,
 }
 
 impl Path {
-    /// Raises the threshold until the constant alone is left.
+    /// Raises the threshold until only the constant is left.
     ///
-    /// `settle` regresses on the columns that are left, its second argument follows; it gives whether the law
-    /// settled, or why it may go no further.
+    /// `settle` regresses on the remaining columns and updates the law that is its second argument. It
+    /// returns `true` if the law settled, and an error if the fit has to stop.
     pub fn over(
         mut columns: Vec<Column>,
         scaled: &Scaled,
@@ -37,7 +37,7 @@ impl Path {
                     return path;
                 }
             }
-            // Just above the smallest coefficient, where one term falls.
+            // The threshold rises just above the smallest coefficient, so that one term is dropped.
             let smallest = path
                 .latest
                 .terms

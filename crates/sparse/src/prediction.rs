@@ -1,4 +1,4 @@
-//! What a law says of ln A at any time.
+//! Predictions of a law for ln A at any time.
 
 use crate::flow::State;
 use crate::law::Law;
@@ -6,18 +6,18 @@ use crate::scaled::Scaled;
 use estimator::Prediction;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-/// The law at times in seconds after the first peak, one prediction for each.
+/// Predicts ln A by the law at times in seconds after the first peak, one prediction per time.
 ///
-/// Between two peaks it is the cubic with the trajectory's values and the law's rates at both; after the
-/// last peak and before the first the law is integrated on from the trajectory's end. At the peaks it is the
-/// trajectory itself.
+/// Between two peaks the prediction is the cubic with the trajectory's values and the law's rates at both.
+/// After the last peak and before the first the law is integrated from the trajectory's end. At the peaks it
+/// is the trajectory itself.
 ///
-/// `instruments`, peaks by parameters, says what the regression asked of the residuals r: Zᵀr = 0. With J
-/// the derivatives of the law's ln A at the peaks by its initial value and its coefficients, a scatter ε
-/// moves the parameters by (ZᵀJ)⁻¹Zᵀε, to first order and with the instruments held; so ln A at a time
-/// where its derivatives are g has the variance σ²·‖Z(ZᵀJ)⁻ᵀg‖², and a measured peak there σ² more. σ² is the
-/// sum of squares over the peaks minus the parameters. Without instruments, or a degree of freedom, no
-/// standard deviation is stated.
+/// `instruments` Z, peaks by parameters, are the weights in the regression's condition on the residuals r:
+/// Zᵀr = 0. Let J be the derivatives of the law's ln A at the peaks by its initial value and its
+/// coefficients. To first order and with fixed instruments, a scatter ε moves the parameters by (ZᵀJ)⁻¹Zᵀε.
+/// So ln A at a time where its derivatives are g has the variance σ²·‖Z(ZᵀJ)⁻ᵀg‖², and a measured peak there
+/// has σ² more. σ² is the sum of squares over the number of peaks minus the number of parameters. Without
+/// instruments, or without a degree of freedom, no standard deviation is stated.
 ///
 /// Reference: Sargan, Econometrica 26 (1958) 393, for the covariance under instruments that are not the
 /// derivatives themselves.
@@ -44,7 +44,7 @@ pub fn predictions(
     logs.into_iter().enumerate().map(predict).collect()
 }
 
-/// x of the law's own function at scaled times.
+/// Returns x of the law's function at scaled times.
 fn logs(law: &Law, scaled: &Scaled, times: &[f64]) -> Vec<f64> {
     let end = scaled.times.last().zip(law.trajectory.last()).map_or((1.0, 0.0), |(time, log)| (*time, *log));
     let start = law.start();
@@ -63,7 +63,7 @@ fn logs(law: &Law, scaled: &Scaled, times: &[f64]) -> Vec<f64> {
     logs
 }
 
-/// Places of the times that are asked for, by time.
+/// Returns the indices of the selected times, sorted by time.
 fn order(times: &[f64], asked: impl Fn(f64) -> bool, backward: bool) -> Vec<usize> {
     let mut places: Vec<(usize, f64)> =
         times.iter().copied().enumerate().filter(|(_, time)| asked(*time)).collect();
@@ -71,7 +71,7 @@ fn order(times: &[f64], asked: impl Fn(f64) -> bool, backward: bool) -> Vec<usiz
     places.into_iter().map(|(place, _)| place).collect()
 }
 
-/// The trajectory between the peaks.
+/// Interpolates the trajectory between the peaks.
 fn within(law: &Law, scaled: &Scaled, time: f64) -> f64 {
     let after = scaled.times.partition_point(|peak| *peak <= time);
     let peak = |at: usize| scaled.times.get(at).copied().zip(law.trajectory.get(at).copied());
@@ -84,7 +84,7 @@ fn within(law: &Law, scaled: &Scaled, time: f64) -> f64 {
     (1.0 + 2.0 * far) * near * near * low + (1.0 + 2.0 * near) * far * far * high + step * near * far * slopes
 }
 
-/// The law followed from its start to scaled times in any order, forward and backward.
+/// Follows the law from its start to scaled times in any order, forward and backward.
 fn followed(law: &Law, start: &State, times: &[f64]) -> Vec<State> {
     let mut found = vec![start.clone(); times.len()];
     for places in [order(times, |time| time >= 0.0, false), order(times, |time| time < 0.0, true)] {
@@ -98,11 +98,11 @@ fn followed(law: &Law, start: &State, times: &[f64]) -> Vec<State> {
     found
 }
 
-/// How the scatter of the peaks moves a law.
+/// Effect of the scatter of the peaks on a law.
 struct Scatter {
     variance: f64,
     instruments: DMatrix<f64>,
-    /// Of JᵀZ.
+    /// LU factors of JᵀZ.
     factor: LU<f64, Dyn, Dyn>,
 }
 
@@ -120,9 +120,10 @@ impl Scatter {
         })
     }
 
-    /// Of a measured ln A where a state is expected; NaN where it cannot be told.
+    /// Returns the variance of a measured ln A about the prediction for a state; NaN if the system is
+    /// singular.
     fn variance(&self, state: &State) -> f64 {
-        // u with (JᵀZ)·u = g, that is u = (ZᵀJ)⁻ᵀg.
+        // Solve (JᵀZ)·u = g, that is u = (ZᵀJ)⁻ᵀg.
         let gradient = DVector::from_column_slice(&state.derivatives);
         self.factor
             .solve(&gradient)
@@ -135,7 +136,7 @@ mod tests {
     use super::*;
     use envelope::Envelope;
 
-    /// The constant law over a scattered line, with the trajectory of least squares.
+    /// Constant law over a scattered line, with the trajectory of least squares.
     fn line() -> (Law, Scaled) {
         let times: Vec<f64> = (0..40).map(|i| 0.5 * f64::from(i)).collect();
         let logs = times.iter().enumerate().map(|(i, t)| 0.3 - 0.2 * t + 0.1 * ((i * 37 % 11) as f64));

@@ -1,20 +1,20 @@
-//! The budget, and whoever watches.
+//! Budget of a fit and reports to the observer.
 
 use crate::law::Law;
 use crate::scaled::Scaled;
 use estimator::{FitContext, Reached, Step, Stop};
 
-/// Why a fit may go no further.
+/// Reason why a fit has to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Halt {
     /// The budget of steps is spent.
     Spent,
-    /// Somebody asked to stop.
+    /// A stop was requested.
     Interrupted,
 }
 
 impl Halt {
-    /// Reason for the stop after a number of regressions, with the equation so far and what to do about it.
+    /// Returns the reason for the stop after a number of regressions, with the equation so far and advice.
     pub fn stop(self, steps: u64, equation: &str) -> Stop {
         match self {
             Self::Spent => Stop {
@@ -32,7 +32,7 @@ impl Halt {
     }
 }
 
-/// Counts the regressions of a fit and tells whoever watches.
+/// Counter of a fit's regressions that reports to the observer.
 pub struct Progress<'a> {
     context: &'a FitContext<'a>,
     limit: u64,
@@ -40,22 +40,23 @@ pub struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// Starts at step 0 with the law of no decay; the limit is the smaller of the method's own and the context's.
+    /// Starts at step 0 with the law of no decay. The limit is the smaller of the method's own and the
+    /// context's.
     pub fn new(context: &'a FitContext<'a>, own_limit: u64, scaled: &Scaled) -> Self {
         let progress = Self { context, limit: context.step_limit(own_limit), steps: 0 };
         progress.tell(&Law::null(scaled), "start", scaled);
         progress
     }
 
-    /// Number of regressions so far.
+    /// Returns the number of regressions so far.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Leave for one more regression.
+    /// Counts one more regression if it is allowed.
     ///
     /// # Errors
-    /// [`Halt`] where the budget is spent or somebody asked to stop.
+    /// [`Halt`] if the budget is spent or a stop was requested.
     pub fn advance(&mut self) -> Result<(), Halt> {
         if self.context.is_canceled() {
             return Err(Halt::Interrupted);
@@ -67,8 +68,8 @@ impl<'a> Progress<'a> {
         Ok(())
     }
 
-    /// Tells of the regression that was last given leave: mean square of the differences in ln A, λ of
-    /// the function.
+    /// Reports the latest regression to the observer: the mean squared difference in ln A, and λ of the law's
+    /// function.
     pub fn tell(&self, law: &Law, phase: &str, scaled: &Scaled) {
         self.context.observe(&Step {
             step: self.steps,

@@ -1,19 +1,19 @@
-//! Linear least squares with its own arithmetic.
+//! Linear least squares, implemented independently of the oracle.
 
 use nalgebra::{DMatrix, DVector, SVD};
 
-/// Directions of a column-scaled matrix weaker than this share of the strongest are left alone.
+/// Smallest singular value that is used, as a share of the largest; weaker directions get no coefficient.
 const WEAKEST: f64 = 1e-10;
 
-/// The shortest least-squares solution of `matrix`·c = `target`, the columns scaled to length 1: QR, then
-/// the singular values of R, so that terms that cannot be told apart share what they explain.
+/// Returns the shortest least-squares solution of `matrix`·c = `target`, with the columns scaled to length 1:
+/// QR, then the singular values of R. Terms that cannot be told apart share what they explain.
 ///
-/// `matrix` n × k with n ≥ k, `target` of length n. `None` where an entry is not finite or a column
-/// vanishes.
+/// `matrix` is n × k with n ≥ k, and `target` has length n. `None` if an entry is not finite, a column is
+/// zero, or n < k.
 pub fn solve(mut matrix: DMatrix<f64>, mut target: DVector<f64>) -> Option<DVector<f64>> {
     let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
     let usable = lengths.iter().all(|length| length.is_finite() && *length > 0.0);
-    // The decompositions would not end on a number that is not finite.
+    // The decompositions would not terminate on numbers that are not finite.
     if !usable || target.iter().any(|entry| !entry.is_finite()) || matrix.nrows() < matrix.ncols() {
         return None;
     }

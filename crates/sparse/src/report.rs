@@ -1,11 +1,12 @@
-//! The discovered law in words.
+//! Report on the discovered law in words.
 
 use crate::law::{Law, number};
 use crate::path::Path;
 use crate::scaled::Scaled;
 
-/// One sentence on why the fit stopped: the law, the number of laws compared, and by how much its information criterion lies
-/// below that of an exponential. `criteria` holds one value for each law of the path, in its order.
+/// Returns one sentence on why the fit stopped: the law, the number of laws compared, and how far its
+/// information criterion lies below that of an exponential. `criteria` holds one value per law of the path,
+/// in its order.
 pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> String {
     debug_assert_eq!(path.laws.len(), criteria.len(), "a criterion for each law");
     let criterion_of = |parameters: usize| {
@@ -28,9 +29,10 @@ pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> Stri
     }
 }
 
-/// The model file: the law, what λ is, and the path it was chosen from.
+/// Returns the text of the model file: the law, the definition of λ, and the path that the law was chosen
+/// from.
 ///
-/// `method` is what a method adds of its own before the path, whole paragraphs or nothing.
+/// `method` is the method's own text before the path: whole paragraphs, or empty.
 pub fn model_text(scaled: &Scaled, law: &Law, path: &Path, criteria: &[f64], method: &str) -> String {
     let start = law.start() + scaled.mean;
     let mut text = format!(

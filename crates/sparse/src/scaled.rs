@@ -1,17 +1,18 @@
-//! The envelope in scaled coordinates.
+//! Envelope in scaled coordinates.
 
 use envelope::Envelope;
 use estimator::{FitError, Scaling};
 
-/// s = t/span in 0..1 and x = ln A − mean: no line is fitted here, only a range, a mean and a standard
-/// deviation. The logarithms keep their unit, because the terms of a law are exponentials of them.
+/// Envelope in the coordinates s = t/span in 0..1 and x = ln A − mean. No line is fitted here, only a range,
+/// a mean and a standard deviation. The logarithms keep their unit, because the terms of a law are
+/// exponentials of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scaled {
-    /// From the first peak to the last, in seconds.
+    /// Time from the first peak to the last, in seconds.
     pub span_s: f64,
     /// Mean of ln A.
     pub mean: f64,
-    /// Standard deviation of ln A.
+    /// Standard deviation of ln A, with divisor n.
     pub spread: f64,
     /// s of every peak.
     pub times: Vec<f64>,
@@ -20,7 +21,7 @@ pub struct Scaled {
 }
 
 impl Scaled {
-    /// The scaled envelope.
+    /// Scales an envelope.
     ///
     /// # Errors
     /// [`FitError::NoSpread`] as for [`Scaling::of`].
@@ -35,24 +36,25 @@ impl Scaled {
         })
     }
 
-    /// Number of peaks.
+    /// Returns the number of peaks.
     pub fn peaks(&self) -> usize {
         self.times.len()
     }
 
-    /// Times after their mean.
+    /// Returns the scaled times minus their mean.
     fn centered_times(&self) -> impl Iterator<Item = f64> + '_ {
         let mean = self.times.iter().sum::<f64>() / self.peaks() as f64;
         self.times.iter().map(move |time| time - mean)
     }
 
-    /// Σ(s − mean)² over the peaks, without unit: the variance of a slope is that of the residuals divided by it.
+    /// Returns Σ(s − mean)² over the peaks, dimensionless. The variance of a slope is that of the residuals
+    /// divided by it.
     pub fn squared_times(&self) -> f64 {
         self.centered_times().map(|time| time * time).sum()
     }
 
-    /// λ in 1/s of a function given at the peaks (one value of x each): minus the slope of its least-squares projection
-    /// on a line.
+    /// Returns λ in 1/s of a function given by one value of x per peak: minus the slope of its least-squares
+    /// line.
     pub fn decay_rate(&self, function: &[f64]) -> f64 {
         debug_assert_eq!(function.len(), self.peaks(), "one value a peak");
         let mean = function.iter().sum::<f64>() / self.peaks() as f64;
@@ -60,7 +62,8 @@ impl Scaled {
         -product / (self.squared_times() * self.span_s)
     }
 
-    /// Differences in x between the measured peaks and a function given at them, in the order of the peaks.
+    /// Returns the differences in x between the measured peaks and a function given at them, in the order of
+    /// the peaks.
     pub fn residuals(&self, function: &[f64]) -> Vec<f64> {
         self.logs.iter().zip(function).map(|(log, x)| log - x).collect()
     }

@@ -1,12 +1,12 @@
-//! The candidate terms of a law.
+//! Candidate terms of a law.
 
 use std::fmt;
 
-/// A candidate for the right-hand side of d ln A/dt, as a function of x = ln A − mean and of the scaled
+/// Candidate term of the right-hand side of d ln A/dt, as a function of x = ln A − mean and of the scaled
 /// time s in 0..1.
 ///
-/// Exponentials are taken minus one: a law always has a constant, which takes up the difference, and an
-/// envelope that hardly decays keeps its digits.
+/// Exponentials are taken minus one, so that an envelope that hardly decays keeps its digits. The constant
+/// that every law has absorbs the difference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Term {
     /// 1: viscous damping. Every law has it.
@@ -21,12 +21,12 @@ pub enum Term {
     LogAmplitude,
     /// (ln A)².
     SquaredLogAmplitude,
-    /// t: damping that drifts.
+    /// t: damping that drifts with time.
     Time,
 }
 
 impl Term {
-    /// Every term, in the order of reading.
+    /// Every term, in the order of equations.
     pub const ALL: [Self; 7] = [
         Self::Constant,
         Self::InverseAmplitude,
@@ -37,7 +37,7 @@ impl Term {
         Self::Time,
     ];
 
-    /// The name as configurations write it.
+    /// Returns the name used in configurations.
     pub fn name(self) -> &'static str {
         match self {
             Self::Constant => "1",
@@ -50,12 +50,13 @@ impl Term {
         }
     }
 
-    /// The term with a name as [`Self::name`] writes it; `None` where no term has it.
+    /// Returns the term with a name as given by [`Self::name`]; `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|term| term.name() == name)
     }
 
-    /// Value at x = `log` and s = `time`, without unit; exponentials minus one, as [`Self::offset`] says.
+    /// Returns the value at x = `log` and s = `time`, dimensionless; exponentials are taken minus one, as
+    /// [`Self::offset`] says.
     pub fn value(self, log: f64, time: f64) -> f64 {
         match self {
             Self::Constant => 1.0,
@@ -68,7 +69,8 @@ impl Term {
         }
     }
 
-    /// Partial derivatives of [`Self::value`] at x = `log`: with respect to x, then with respect to s.
+    /// Returns the partial derivatives of [`Self::value`] at x = `log`: with respect to x, then with respect
+    /// to s.
     pub fn gradient(self, log: f64) -> (f64, f64) {
         match self {
             Self::Constant => (0.0, 0.0),
@@ -81,7 +83,7 @@ impl Term {
         }
     }
 
-    /// Number that [`Self::value`] leaves out of the term: 1 for exponentials, 0 for the others.
+    /// Returns the number that [`Self::value`] subtracts from the term: 1 for exponentials, 0 for the others.
     pub fn offset(self) -> f64 {
         match self {
             Self::InverseAmplitude | Self::Amplitude | Self::SquaredAmplitude => 1.0,

@@ -1,8 +1,9 @@
-//! Tests of whole fits, the same for every method that discovers laws: their test modules include this file.
+//! Tests of whole fits, shared by all methods that discover laws: their test modules include this file.
 //!
-//! They take the method from `crate::ENTRY` and its bars from the module that includes them: `AGREEMENT`, how far
-//! λ may be from the line's on a bent envelope, `ADDED`, how far an added decay may miss, both relative, and
-//! `odd_bar`, what is left of λ on each of the odd envelopes.
+//! The tests take the method from `crate::ENTRY` and its tolerances from the module that includes them:
+//! `AGREEMENT`, the relative difference allowed between λ and the line's on a bent envelope; `ADDED`, the
+//! relative error allowed for an added decay; and `odd_bar`, the difference from the line's λ allowed on each
+//! of the odd envelopes.
 
 use super::{ADDED, AGREEMENT, odd_bar};
 use crate::ENTRY;
@@ -24,22 +25,22 @@ pub(super) fn resolved(overrides: &[&str]) -> Resolved {
     Resolved::new(&document, &[Section { name: "estimator", fields: ENTRY.fields }]).unwrap()
 }
 
-/// The method with settings of its own.
+/// Returns the method with the given overrides of its settings.
 pub(super) fn estimator(overrides: &[&str]) -> Box<dyn Estimator> {
     (ENTRY.build)(&resolved(overrides)).unwrap()
 }
 
-/// An envelope that is no exponential: it bends and scatters.
+/// Returns an envelope that is no exponential: it bends and scatters.
 fn bent() -> Envelope {
     conformance::bent().unwrap()
 }
 
-/// A noise-free exponential, peaks a second apart.
+/// Returns a noise-free exponential, with peaks one second apart.
 fn exponential(peaks: usize, rate: f64, start: f64) -> Envelope {
     changed(&conformance::exponential(peaks, start, 0.0).unwrap(), |t, y| (t / 0.288, y - rate * t / 0.288))
 }
 
-/// Peaks of dA/dt = −viscous·A − dry − drag·A², A(0) = 0.5, by small Runge-Kutta steps.
+/// Returns peaks of dA/dt = −viscous·A − dry − drag·A², A(0) = 0.5, by small Runge-Kutta steps.
 pub(super) fn damped(
     peaks: usize,
     span: f64,
@@ -67,7 +68,7 @@ pub(super) fn damped(
     Envelope::new(times, logs, 21.8).unwrap()
 }
 
-/// Minus the slope of the least-squares line, and its standard error, from the textbook.
+/// Returns minus the slope of the least-squares line, and its standard error, by the textbook formulas.
 pub(super) fn line(envelope: &Envelope) -> (f64, f64) {
     let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
     let n = t.len() as f64;
@@ -79,7 +80,7 @@ pub(super) fn line(envelope: &Envelope) -> (f64, f64) {
     (-slope, (rss / (n - 2.0) / sxx).sqrt())
 }
 
-/// A fit of the method as it comes, its predictions asked for at some times.
+/// Fits with the default settings and asks for predictions at some times.
 fn fit_at(envelope: &Envelope, times: &[f64]) -> Estimate {
     let cancel = Cancel::new();
     let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).predicting_at(times);
@@ -102,7 +103,7 @@ fn changed(envelope: &Envelope, change: impl Fn(f64, f64) -> (f64, f64)) -> Enve
     Envelope::new(times, logs, envelope.omega_rad_s()).unwrap()
 }
 
-/// The equation of a fit and its coefficients, in the order written.
+/// Returns the equation of a fit and its coefficients, in the order written.
 fn law(estimate: &Estimate) -> (String, Vec<f64>) {
     let text = String::from_utf8(estimate.model.clone().unwrap().bytes).unwrap();
     let equation = text.lines().next().unwrap().to_owned();
@@ -178,7 +179,7 @@ fn intervals_cover() {
             })
             .count();
         let share = covered as f64 / draws as f64;
-        // Within what 1500 draws tell.
+        // The bounds allow for the scatter of a share of 1500 draws.
         assert!((0.935..=0.965).contains(&share), "{peaks} peaks: {share}");
     }
 }
@@ -262,7 +263,7 @@ fn odd_envelopes_give_numbers() {
     let noise = changed(&damped(40, 20.0, [0.2, 0.0, 0.0], 1.0, 9), |t, y| (t, y + 0.2 * t));
     let crowded =
         Envelope::new(vec![0.0, 1e-9, 2e-9, 3e-9, 1.0], vec![0.0, 0.1, -0.1, 0.0, -1.0], 1.0).unwrap();
-    // Dry friction that all but stops the motion within the record.
+    // Dry friction that almost stops the motion within the record.
     let stopping = damped(60, 20.0, [0.0, 0.0249, 0.0], 0.3, 1);
     let envelopes = [
         exponential(3, 0.2, 0.0),
@@ -321,7 +322,7 @@ fn at_the_peaks_predictions_are_the_fitted_function() {
             assert!((prediction.log_amplitude - fitted).abs() < 1e-12, "{prediction:?} {fitted}");
             assert!(prediction.std_error.is_some(), "{prediction:?}");
         }
-        // Asking changes nothing else.
+        // Asking for predictions changes nothing else.
         assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit_with(&envelope, 0, None, &Silent));
     }
 }
@@ -337,7 +338,7 @@ fn an_exponential_is_extrapolated() {
     }
 }
 
-/// dA/dt = −v·A − d: A = (A(0) + d/v)·exp(−v·t) − d/v, at rest from t = ln(1 + A(0)·v/d)/v on.
+/// dA/dt = −v·A − d has A = (A(0) + d/v)·exp(−v·t) − d/v, at rest from t = ln(1 + A(0)·v/d)/v on.
 #[test]
 fn dry_friction_is_followed_to_its_rest() {
     let (viscous, dry) = (0.13, 0.0035);
@@ -348,7 +349,7 @@ fn dry_friction_is_followed_to_its_rest() {
     let estimate = fit_at(&damped(69, 20.0, [viscous, dry, 0.0], 0.0, 0), &times);
     for (time, prediction) in times.iter().zip(&estimate.predictions) {
         if *time < end {
-            // What is left is the quadrature between the peaks and the rounding of the law.
+            // The remaining error comes from the quadrature between the peaks and the rounding of the law.
             let off = prediction.log_amplitude.exp() - amplitude(*time);
             assert!(off.abs() < 1e-6, "{time}: {off:e} {prediction:?}");
         } else {
@@ -361,24 +362,25 @@ fn dry_friction_is_followed_to_its_rest() {
 #[test]
 fn predictive_intervals_hold_fresh_peaks() {
     let mut generator = Seed::new(12).generator();
-    // The exponential half a record beyond its end; the bent law within, where its choice does not tell.
+    // The exponential is tested up to half a record beyond its end; the bent law only within the record,
+    // where the choice of its terms matters little.
     for (damping, reach) in [([0.2, 0.0, 0.0], 1.5), ([0.13, 0.0035, 0.0], 1.0)] {
         let trials: u32 = 300;
         let held = (0..trials)
             .filter(|&trial| {
                 let seed = u64::from(trial);
                 let time = 20.0 * reach * generator.random::<f64>();
-                // The truth at that time: the last of peaks that end there.
+                // The truth at that time is the last of nine peaks that end there.
                 let truth = damped(9, time, damping, 0.0, 0).log_amplitudes()[8];
                 let draw: f64 = StandardNormal.sample(&mut generator);
                 let prediction = fit_at(&damped(69, 20.0, damping, 0.05, seed), &[time]).predictions[0];
-                // Student's t with some 66 degrees of freedom.
+                // Quantile of Student's t with about 66 degrees of freedom.
                 (truth + 0.05 * draw - prediction.log_amplitude).abs()
                     <= 1.9966 * prediction.std_error.unwrap()
             })
             .count();
         let share = held as f64 / f64::from(trials);
-        // Four standard deviations of such a share.
+        // The bounds are four standard deviations of such a share.
         assert!(
             (share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(trials)).sqrt(),
             "{damping:?}: {share}"
@@ -386,8 +388,8 @@ fn predictive_intervals_hold_fresh_peaks() {
     }
 }
 
-/// The stated variance of the function is σ²·Σ(∂f/∂yᵢ)², the derivatives by every measured ln A taken from fits
-/// with that one moved, where the law's terms are known.
+/// The stated variance of the function is σ²·Σ(∂f/∂yᵢ)². The derivatives by every measured ln A are taken
+/// from fits with that one value moved, for a law with known terms.
 #[test]
 fn the_error_of_a_prediction_is_what_the_scatter_of_the_peaks_makes_of_it() {
     let times = [-2.0, 0.0, 11.0, 19.9, 22.0];
@@ -415,7 +417,8 @@ fn the_error_of_a_prediction_is_what_the_scatter_of_the_peaks_makes_of_it() {
     }
     for (prediction, sum) in estimate.predictions.iter().zip(sums) {
         let stated = prediction.std_error.unwrap().powi(2) / variance - 1.0;
-        // That the terms along the trajectory move with it, against the residuals, is left out.
+        // The stated error neglects that the terms along the trajectory move with it, which matters where
+        // residuals are not 0.
         assert!((stated / sum - 1.0).abs() < 0.02, "{stated} {sum}");
     }
 }

@@ -1,4 +1,4 @@
-//! What preparing a study can fail of.
+//! Errors of preparing a study.
 
 use envelope::EnvelopeError;
 use oracle::OracleError;
@@ -6,26 +6,26 @@ use record::RecordError;
 use simulator::SimulationError;
 use thiserror::Error;
 
-/// Why a problem cannot be studied.
+/// Reason why a problem cannot be studied.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// The record file cannot be used.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// The record has no envelope.
+    /// No envelope can be extracted from the record.
     #[error("{file}: {source}")]
     Envelope {
-        /// The record's file.
+        /// Name of the record's file.
         file: String,
-        /// Why.
+        /// Reason.
         source: EnvelopeError,
     },
     /// No line can be fitted to the envelope.
     #[error("{file}: {source}")]
     Oracle {
-        /// The problem, by its key.
+        /// Key of the problem in the configuration.
         file: String,
-        /// Why.
+        /// Reason.
         source: OracleError,
     },
     /// The problem cannot be simulated.
@@ -33,10 +33,10 @@ pub enum StudyError {
     Simulation {
         /// Name of the problem.
         problem: String,
-        /// Why.
+        /// Reason.
         source: SimulationError,
     },
-    /// Too few peaks to hold some out.
+    /// There are too few peaks to hold some out.
     #[error(
         "problem.{problem}: {peaks} peaks cannot be split: {missing}; lower predict.block_peaks or \
          predict.last_share, or give an envelope with more peaks"
@@ -46,7 +46,7 @@ pub enum StudyError {
         problem: String,
         /// Number of its peaks.
         peaks: usize,
-        /// What the split needs.
+        /// Requirement of the split that is not met.
         missing: &'static str,
     },
 }

@@ -1,7 +1,8 @@
-//! Held-out prediction: problems, splits, and scores of methods on peaks that they did not see.
+//! Held-out prediction: problems, splits, and scores of methods on peaks that were not fitted.
 //!
-//! [`prepare`] reads or draws a problem; whoever fits methods gives each the envelope that [`seen`] leaves and hands its
-//! [`Trial`]s to [`result`] and [`csv_rows`]. No method is named here.
+//! [`prepare`] reads or simulates a problem. The caller fits each method to the envelope that [`seen`]
+//! returns and passes the resulting [`Trial`]s to [`result`] and [`csv_rows`]. No method is named in this
+//! crate.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

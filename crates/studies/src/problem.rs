@@ -1,4 +1,4 @@
-//! The problems of a study, read or drawn.
+//! Problems of a study, read from records or simulated.
 
 use crate::error::StudyError;
 
@@ -14,52 +14,52 @@ use seed::Seed;
 use simulator::{DecayLaw, EnvelopeSimulation, Scatter};
 use std::path::Path;
 
-/// A problem that is ready to be studied.
+/// Problem that is ready to be studied.
 pub struct Ready {
     /// Name in the configuration.
     pub id: String,
     /// Title in tables.
     pub title: String,
-    /// Where its numbers came from.
+    /// Origin of the numbers.
     pub origin: Origin,
     /// Unit of the amplitudes.
     pub unit: String,
-    /// Summary of the record; `None` of a simulation.
+    /// Summary of the record; `None` for a simulation.
     pub data: Option<DataSummary>,
-    /// Truth of a simulation; `None` of a record.
+    /// Truth of a simulation; `None` for a record.
     pub truth: Option<Truth>,
-    /// The draws of a simulation, or the one envelope of a record.
+    /// Envelopes: the draws of a simulation, or the single envelope of a record.
     pub envelopes: Vec<Envelope>,
-    /// Every way in which peaks are held out.
+    /// All splits into fitted and held-out peaks.
     pub splits: Vec<Split>,
 }
 
-/// What is known of a simulated problem and shown to no method.
+/// Truth of a simulated problem, which no method sees.
 pub struct Truth {
     /// Noise-free ln A of every peak.
     pub log_amplitudes: Vec<f64>,
-    /// The law of decay.
+    /// Law of the decay.
     pub law: LawSummary,
-    /// For each split, minus the least-squares slope of the noise-free ln A over the peaks seen, in 1/s.
+    /// For each split, minus the least-squares slope of the noise-free ln A over the fitted peaks, in 1/s.
     pub projected_slopes: Vec<f64>,
 }
 
-/// A problem whose record is not there.
+/// Problem whose record file is missing.
 pub struct Missing {
     /// Name in the configuration.
     pub id: String,
     /// Title in tables.
     pub title: String,
-    /// Origin as the configuration states it.
+    /// Origin that the configuration states.
     pub origin: Origin,
-    /// Sentence that names the file and where it can be had.
+    /// Sentence that names the file and its source.
     pub reason: String,
 }
 
-/// Reads or draws a problem. A record that is absent is no error; one that cannot be used is.
+/// Reads or simulates a problem. A missing record is not an error; an unusable record is.
 ///
 /// # Errors
-/// [`StudyError`] with the problem or the file that it is about.
+/// [`StudyError`] with the problem or the file at fault.
 pub fn prepare(study: &PredictionStudy, problem: &Problem) -> Result<Result<Ready, Missing>, StudyError> {
     match &problem.source {
         ProblemSource::Simulated(simulated) => draw(study, problem, simulated).map(Ok),
@@ -69,14 +69,14 @@ pub fn prepare(study: &PredictionStudy, problem: &Problem) -> Result<Result<Read
         ProblemSource::Record { data, .. } => Ok(Err(Missing {
             id: problem.id.clone(),
             title: problem.title.clone(),
-            // What nobody stated is unstated.
+            // An origin that nobody stated is `unstated`.
             origin: data.statements().origin.unwrap_or_default(),
             reason: missing(&problem.id, data),
         })),
     }
 }
 
-/// Why a record's row is left out, and what puts it in.
+/// Explains why a record's row is missing, and how to add it.
 fn missing(id: &str, data: &DataSettings) -> String {
     let path = &data.path;
     match &data.source {
@@ -213,18 +213,19 @@ fn law(
     }
 }
 
-/// The best exponential through an envelope.
+/// Fits the best exponential to an envelope.
 ///
 /// # Errors
-/// [`StudyError::Oracle`] where no line can be fitted.
+/// [`StudyError::Oracle`] if no line can be fitted.
 pub(crate) fn line(problem: &str, envelope: &Envelope) -> Result<DecayFit, StudyError> {
     oracle::decay_rate(envelope)
         .map_err(|source| StudyError::Oracle { file: format!("problem.{problem}"), source })
 }
 
 impl Ready {
-    /// The splits that a draw is fitted on: every one of a record; of a simulation one fold of
-    /// interpolation, the next one for the next draw, and extrapolation.
+    /// Returns the indices of the splits on which a draw is fitted. For a record these are all splits. For a
+    /// simulation they are extrapolation and one fold of interpolation, a different fold for each successive
+    /// draw.
     pub fn splits_of(&self, draw: usize) -> impl Iterator<Item = usize> + '_ {
         let folds = self.splits.iter().filter(|split| split.kind == SplitKind::Interpolation).count();
         let is_record = self.truth.is_none();

@@ -1,30 +1,29 @@
-//! Splits of an envelope's peaks into those that a fit sees and those held out.
+//! Splits of an envelope's peaks into fitted and held-out peaks.
 
 use crate::error::StudyError;
 use experiment::PredictionSettings;
 use results::SplitKind;
 
-/// One way to hold out peaks: of every peak the number of the block that it is held out with, or `None`
-/// where the fit sees it. The first peak always is seen.
+/// Split of the peaks into fitted and held-out ones. The first peak is always fitted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Split {
-    /// Why peaks are held out.
+    /// Purpose of the split: interpolation or extrapolation.
     pub kind: SplitKind,
-    /// Block of every peak that is held out, in the order of the peaks.
+    /// For each peak, in order, the number of the block with which it is held out; `None` if it is fitted.
     pub held_out: Vec<Option<usize>>,
 }
 
-/// Fewest peaks that a fit is given.
+/// Minimum number of peaks in a fit.
 const FEWEST_SEEN: usize = 6;
 
-/// Every split of a problem's peaks: the folds of interpolation first, extrapolation last.
+/// Returns all splits of a problem's peaks: the folds of interpolation first, extrapolation last.
 ///
-/// Interpolation cuts the peaks into blocks of `block_peaks`; of `every` successive ones each fold holds out
-/// one, never the first and never the last block, so that held-out peaks lie between others.
-/// Extrapolation holds out the last `last_share` of the peaks, as one block.
+/// Interpolation divides the peaks into blocks of `block_peaks`. Each fold holds out one of `every`
+/// successive blocks, never the first and never the last block, so that held-out peaks lie between fitted
+/// ones. Extrapolation holds out the last `last_share` of the peaks as one block.
 ///
 /// # Errors
-/// [`StudyError::Split`] where a fit would see fewer than six peaks, or where there are fewer than three blocks.
+/// [`StudyError::Split`] if a fit would have fewer than six peaks, or if there are fewer than three blocks.
 pub(crate) fn splits(
     problem: &str,
     peaks: usize,
@@ -58,12 +57,12 @@ pub(crate) fn splits(
 }
 
 impl Split {
-    /// Indices of the peaks that the fit sees.
+    /// Returns the indices of the fitted peaks.
     pub fn seen(&self) -> impl Iterator<Item = usize> + '_ {
         self.held_out.iter().enumerate().filter(|(_, block)| block.is_none()).map(|(peak, _)| peak)
     }
 
-    /// The entries of a list that has one for each peak, those that the fit sees.
+    /// Selects the fitted peaks' entries from a list with one entry per peak.
     #[must_use]
     pub fn seen_of(&self, values: &[f64]) -> Vec<f64> {
         self.seen().filter_map(|peak| values.get(peak).copied()).collect()
@@ -93,7 +92,7 @@ mod tests {
         assert_eq!((folds.len(), end.len()), (4, 1));
         for peak in 0..70 {
             let times = folds.iter().filter(|fold| fold.held_out[peak].is_some()).count();
-            // Blocks of three: 24 of them, the last of one peak.
+            // There are 24 blocks of three peaks, the last with one peak.
             assert_eq!(times, usize::from((3..69).contains(&peak)), "{peak}");
         }
         for fold in folds {

@@ -1,4 +1,4 @@
-//! From the trials of all methods on all problems to the tables of a study.
+//! Tables of a study, from the trials of all methods on all problems.
 
 use crate::problem::{Missing, Ready};
 use crate::tally::{Placed, adjust, outcome, score};
@@ -13,7 +13,7 @@ use results::{
 /// Name of the best exponential in `predictions.csv`.
 const EXPONENTIAL: &str = "best-exponential";
 
-/// A method as the tables name it.
+/// Method as the tables name it.
 #[derive(Debug, Clone, Copy)]
 pub struct StudiedMethod {
     /// Number in the paper's tables.
@@ -22,11 +22,11 @@ pub struct StudiedMethod {
     pub id: &'static str,
     /// Title in tables.
     pub title: &'static str,
-    /// Where it comes from.
+    /// Family to which the method belongs.
     pub family: Family,
 }
 
-/// All trials on one problem: those of the best exponential, and of every method.
+/// All trials on one problem: those of the best exponential and those of every method.
 #[derive(Debug)]
 pub struct ProblemTrials {
     /// Trials of the best exponential.
@@ -36,7 +36,7 @@ pub struct ProblemTrials {
 }
 
 impl ProblemTrials {
-    /// Whether some trial was not begun.
+    /// Returns `true` if some trial was not begun.
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
         let not_begun = |placed: &Placed| matches!(placed.trial, Err(Failure::NotBegun));
@@ -44,7 +44,7 @@ impl ProblemTrials {
     }
 }
 
-/// Trials of the best exponential on every draw and split of a problem.
+/// Fits the best exponential on every draw and split of a problem.
 #[must_use]
 pub fn best_exponentials(problem: &Ready) -> Vec<Placed> {
     let mut placed = Vec::new();
@@ -59,8 +59,8 @@ pub fn best_exponentials(problem: &Ready) -> Vec<Placed> {
     placed
 }
 
-/// The content of `result.json`: every problem with the scores of every method, `methods` and the methods' trials in the
-/// same order, `trials` in the order of the problems that are ready.
+/// Builds the content of `result.json`: every problem with the scores of every method. `methods` and the
+/// methods' trials have the same order; `trials` has the order of the problems that are ready.
 #[must_use]
 pub fn result(
     study: &PredictionStudy,
@@ -110,7 +110,7 @@ fn absent(reason: &str) -> ProblemOutcome {
     ProblemOutcome::Absent { reason: reason.to_owned() }
 }
 
-/// All scores of a problem; `None` where not even an exponential can be fitted.
+/// Computes all scores of a problem; `None` if not even an exponential can be fitted.
 fn examine(
     study: &PredictionStudy,
     ready: &Ready,
@@ -162,7 +162,7 @@ fn examine(
     Some(found)
 }
 
-/// What rows are sorted by: the error of extrapolation; without one, after all that have one.
+/// Returns the sort key of a row: the error of extrapolation. Rows without one come last.
 fn error(row: &PredictionRow) -> f64 {
     match &row.outcome {
         PredictionOutcome::Scored(scores) => scores.extrapolation.as_ref().map_or(f64::NAN, |score| {
@@ -172,8 +172,8 @@ fn error(row: &PredictionRow) -> f64 {
     }
 }
 
-/// Rows of `predictions.csv`, each method's prediction of each peak: of interpolation those held out, of extrapolation all. Of a
-/// simulation the first draw.
+/// Returns the rows of `predictions.csv`, one for each method's prediction of each peak: for interpolation
+/// the held-out peaks, for extrapolation all peaks. For a simulation only the first draw is included.
 #[must_use]
 pub fn csv_rows(
     problems: &[Result<Ready, Missing>],

@@ -1,4 +1,4 @@
-//! From trials to scores.
+//! Scores computed from trials.
 
 use crate::problem::Ready;
 use crate::trial::{Trial, held_out};
@@ -8,35 +8,35 @@ use results::{
 use scoring::HeldOutPeak;
 use std::collections::BTreeMap;
 
-/// A trial and where it belongs.
+/// Trial with its draw and split.
 #[derive(Debug)]
 pub struct Placed {
     /// Index of the draw.
     pub draw: usize,
     /// Index of the split.
     pub split: usize,
-    /// The trial, or why it has no outcome.
+    /// Trial, or the reason why it has no outcome.
     pub trial: Result<Trial, Failure>,
 }
 
-/// Squared errors that agree to within this share of the exponential's are equal: the method draws the same
-/// line.
+/// Relative difference from the exponential's squared error up to which two squared errors count as equal:
+/// the method then draws the same line.
 const EQUAL: f64 = 1e-6;
 
-/// Held-out peaks of one kind by unit: a draw of a simulation, a block of a record. A failed fit has `None`
-/// in the place of its peaks.
+/// Held-out peaks of one kind of split by unit: a draw of a simulation, a block of a record.
 struct Units {
-    /// By draw (simulation) or by block (record).
+    /// Held-out peaks by draw (simulation) or by block (record).
     peaks: BTreeMap<usize, Vec<HeldOutPeak>>,
-    /// Held-out peaks that a failed fit leaves without a prediction, by unit.
+    /// Number of held-out peaks that have no prediction because a fit failed, by unit.
     lost: BTreeMap<usize, usize>,
     is_record: bool,
 }
 
-/// The scores of a method from its trials, `exponential` being the best exponential's on the same draws.
+/// Computes the scores of a method from its trials; `exponential` holds the trials of the best exponential on
+/// the same draws.
 ///
-/// `common` is the number of draws that every method was fitted on. p-values are not adjusted yet: [`adjust`]
-/// does that once all methods of a problem are known.
+/// `common` is the number of draws on which every method was fitted. The p-values are not adjusted yet:
+/// [`adjust`] does that once all methods of a problem are known.
 pub(crate) fn outcome(
     problem: &Ready,
     trials: &[Placed],
@@ -44,7 +44,7 @@ pub(crate) fn outcome(
     common: usize,
 ) -> PredictionOutcome {
     let fitted = || trials.iter().filter_map(|placed| placed.trial.as_ref().ok());
-    // Scores of some of its fits only would stand beside those of all.
+    // Scores from only some of its fits would otherwise stand beside scores from all fits.
     if trials.iter().any(|placed| matches!(placed.trial, Err(Failure::NotBegun))) {
         return PredictionOutcome::Failed { reason: Failure::NotBegun };
     }
@@ -57,7 +57,7 @@ pub(crate) fn outcome(
     let of = |kind| score(problem, trials, kind, common, Some(exponential));
     let (equation, commonest_form) = laws(problem, trials);
     PredictionOutcome::Scored(Box::new(MethodScores {
-        // Of no trials there is no draw.
+        // Without trials there are no draws.
         draws: trials.iter().map(|placed| placed.draw + 1).max().unwrap_or(0),
         failed_fits: trials.iter().filter(|placed| placed.trial.is_err()).count(),
         first_failure,
@@ -79,8 +79,9 @@ pub(crate) fn outcome(
     }))
 }
 
-/// The scores on held-out peaks of one kind; `None` where the method makes no prediction. Errors and
-/// densities are of the first `common` draws, so that they can be laid beside those of methods with fewer.
+/// Computes the scores on held-out peaks of one kind of split; `None` if the method makes no prediction.
+/// Errors and densities are those of the first `common` draws, so that they can be compared with those of
+/// methods with fewer draws.
 pub(crate) fn score(
     problem: &Ready,
     trials: &[Placed],
@@ -108,7 +109,7 @@ pub(crate) fn score(
     })
 }
 
-/// The held-out peaks of the first so many draws.
+/// Collects the held-out peaks of the first `draws` draws.
 fn units(problem: &Ready, trials: &[Placed], kind: SplitKind, draws: usize) -> Option<Units> {
     let is_record = problem.truth.is_none();
     let mut units = Units { peaks: BTreeMap::new(), lost: BTreeMap::new(), is_record };
@@ -144,7 +145,8 @@ impl Units {
         self.lost.values().sum()
     }
 
-    /// An error of each draw; of a record the one error over all its peaks. Infinite where a fit failed.
+    /// Returns the error of each draw; for a record, the single error over all its peaks. Infinite if a fit
+    /// failed.
     fn errors(&self, error: fn(&[HeldOutPeak]) -> f64) -> Vec<f64> {
         if self.is_record {
             return vec![if self.lost.is_empty() { error(&self.all()) } else { f64::INFINITY }];
@@ -153,7 +155,8 @@ impl Units {
         self.peaks.values().map(|peaks| error(peaks)).chain(lost).collect()
     }
 
-    /// How many stated predictive intervals hold their peak, those of failed fits counting as not.
+    /// Counts the stated predictive intervals that contain their peak. Peaks of failed fits count as not
+    /// contained.
     fn coverage(&self) -> Option<Coverage> {
         let stated: Option<Vec<(usize, usize)>> =
             self.peaks.values().map(|peaks| scoring::held_within_95(peaks)).collect();
@@ -166,7 +169,7 @@ impl Units {
         })
     }
 
-    /// Mean square error of a unit; infinite where a fit failed.
+    /// Returns the mean square error of a unit; infinite if a fit failed.
     fn mean_square(&self, unit: usize) -> Option<f64> {
         if self.lost.contains_key(&unit) {
             return Some(f64::INFINITY);
@@ -183,7 +186,8 @@ fn compare(method: &Units, exponential: &Units) -> PairedComparison {
         let (Some(error), Some(reference)) = (method.mean_square(unit), exponential.mean_square(unit)) else {
             continue;
         };
-        // Two that are infinite are equal without having a difference; no share of an infinite one is a difference.
+        // Two infinite errors are equal although their difference is undefined; a share of an infinite error
+        // is no difference either.
         let is_equal = error.total_cmp(&reference).is_eq()
             || reference.is_finite() && (error - reference).abs() <= EQUAL * reference;
         if is_equal {
@@ -198,8 +202,8 @@ fn compare(method: &Units, exponential: &Units) -> PairedComparison {
     PairedComparison { better, worse, equal, p_value, adjusted_p_value: p_value }
 }
 
-/// Adjusts the p-values of a problem's comparisons for their number, and gives it. What differs from the
-/// exponential nowhere is no comparison.
+/// Adjusts the p-values of a problem's comparisons for their number, and returns that number. A method that
+/// differs from the exponential in no unit does not count as a comparison.
 pub(crate) fn adjust(comparisons: Vec<&mut PairedComparison>) -> usize {
     let mut open: Vec<&mut PairedComparison> =
         comparisons.into_iter().filter(|pair| pair.better + pair.worse > 0).collect();
@@ -210,8 +214,8 @@ pub(crate) fn adjust(comparisons: Vec<&mut PairedComparison>) -> usize {
     open.len()
 }
 
-/// The median over the first `common` draws of the error against the noise-free ln A; infinite ones
-/// included.
+/// Computes the median error against the noise-free ln A over the first `common` draws, including infinite
+/// errors.
 fn truth_error(problem: &Ready, trials: &[Placed], kind: SplitKind, common: usize) -> Option<f64> {
     let truth = problem.truth.as_ref()?;
     let errors: Option<Vec<f64>> = trials
@@ -230,8 +234,8 @@ fn truth_error(problem: &Ready, trials: &[Placed], kind: SplitKind, common: usiz
     errors.map(scoring::median)
 }
 
-/// How often the stated interval of λ, of the interpolation fits, holds a rate; `None` where no fit states
-/// one.
+/// Computes the share of interpolation fits whose stated interval of λ contains a rate; `None` if no fit
+/// states an interval.
 fn covers(problem: &Ready, trials: &[Placed], rate: impl Fn(usize) -> Option<f64>) -> Option<Coverage> {
     let (mut held, mut stated, mut of) = (0, 0, 0);
     for placed in interpolations(problem, trials) {
@@ -255,7 +259,7 @@ fn interpolations<'a>(problem: &'a Ready, trials: &'a [Placed]) -> impl Iterator
     })
 }
 
-/// The first law that interpolation fits discovered, and the commonest form of all.
+/// Returns the first law that the interpolation fits discovered, and the most common form with its count.
 fn laws(problem: &Ready, trials: &[Placed]) -> (Option<String>, Option<(String, usize)>) {
     let laws: Vec<&String> = interpolations(problem, trials)
         .filter_map(|placed| placed.trial.as_ref().ok()?.equation.as_ref())
@@ -264,12 +268,12 @@ fn laws(problem: &Ready, trials: &[Placed]) -> (Option<String>, Option<(String, 
     for law in &laws {
         *counts.entry(form(law)).or_default() += 1;
     }
-    // Of equally common ones the first by name: `max_by_key` alone would take the last.
+    // Of equally common forms, the first by name is taken: `max_by_key` alone would return the last.
     let commonest = counts.into_iter().rev().max_by_key(|(_, count)| *count);
     (laws.first().map(|law| (*law).clone()), commonest)
 }
 
-/// A law with every number written as `c`, exponents of powers apart: `d ln A/dt = -c - c/A^2`.
+/// Returns a law with every number replaced by `c`, except exponents of powers: `d ln A/dt = -c - c/A^2`.
 pub(crate) fn form(law: &str) -> String {
     let letters: Vec<char> = law.chars().collect();
     let at = |index: usize| letters.get(index).copied().unwrap_or(' ');
@@ -277,7 +281,7 @@ pub(crate) fn form(law: &str) -> String {
     let mut index = 0;
     while index < letters.len() {
         let before = if index == 0 { ' ' } else { at(index - 1) };
-        // A digit that is part of a name, or the exponent of a power, is no coefficient.
+        // A digit that is part of a name, or the exponent of a power, is not a coefficient.
         let starts = at(index).is_ascii_digit() && before != '^' && !before.is_alphanumeric();
         if !starts {
             text.push(at(index));
@@ -314,8 +318,8 @@ mod tests {
         assert_eq!(form(""), "");
     }
 
-    /// Draw by draw: both failed; the method; the exponential; both came to rest too early; both are off
-    /// alike; the method is off by less.
+    /// Draw by draw: both failed; the method failed; the exponential failed; both came to rest too early;
+    /// both have the same error; the method has the smaller error.
     #[test]
     fn what_fails_where_the_exponential_fails_is_no_worse() {
         let units = |predictions: [Option<f64>; 6]| {

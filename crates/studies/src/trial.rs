@@ -1,4 +1,4 @@
-//! What one method predicts on one draw and one split.
+//! Predictions of one method on one draw and one split.
 
 use crate::problem::{Ready, line};
 use crate::split::Split;
@@ -8,36 +8,36 @@ use results::Failure;
 use scoring::HeldOutPeak;
 use serde::{Deserialize, Serialize};
 
-/// What a method made of the peaks that it saw.
+/// Result of fitting a method to the peaks that are not held out.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Trial {
-    /// The fitted function at every peak of the problem; `None` where the method makes no prediction.
+    /// Fitted function at every peak of the problem; `None` if the method makes no prediction.
     pub curve: Option<Vec<Prediction>>,
-    /// The 95 % interval of λ that it states, in 1/s.
+    /// Stated 95 % interval of λ, in 1/s; `None` if the method states none.
     pub rate_interval: Option<[f64; 2]>,
-    /// Law that it discovered.
+    /// Law that the method discovered.
     pub equation: Option<String>,
-    /// Whether its optimizer converged.
+    /// `true` if the method's optimizer converged.
     pub converged: bool,
     /// Duration of the fit, in s.
     pub seconds: f64,
 }
 
-/// The envelope of the peaks that the fit sees. The first peak is among them, so that times stay what they
-/// are.
+/// Returns the envelope of the fitted peaks. The first peak is always among them, so that the times keep
+/// their origin.
 ///
 /// # Errors
-/// [`EnvelopeError`] where the peaks that are left make no envelope.
+/// [`EnvelopeError`] if the remaining peaks do not form an envelope.
 pub fn seen(envelope: &Envelope, split: &Split) -> Result<Envelope, EnvelopeError> {
     let of = |values: &[f64]| split.seen_of(values);
     Envelope::new(of(envelope.times_s()), of(envelope.log_amplitudes()), envelope.omega_rad_s())
 }
 
-/// The best exponential through the peaks that the split leaves, at every peak, with the standard deviation
-/// of a measured ln A about it under independent scatter of one variance.
+/// Fits the best exponential to the peaks that are not held out and evaluates it at every peak, with the
+/// standard deviation of a measured ln A about it, assuming independent scatter of constant variance.
 ///
 /// # Errors
-/// A sentence that says why there is no line.
+/// A sentence that says why no line can be fitted.
 pub(crate) fn best_exponential(
     problem: &Ready,
     envelope: &Envelope,
@@ -63,7 +63,7 @@ pub(crate) fn best_exponential(
     })
 }
 
-/// The held-out peaks of a trial with the block that each belongs to; `None` where nothing is predicted.
+/// Returns the held-out peaks of a trial, each with its block; `None` if nothing is predicted.
 pub(crate) fn held_out(trial: &Trial, observed: &[f64], split: &Split) -> Option<Vec<(usize, HeldOutPeak)>> {
     let curve = trial.curve.as_ref()?;
     let peaks =

@@ -1,14 +1,14 @@
-//! What the scores of a problem come to, in sentences that claim no more than they carry.
+//! Verdict on a problem: sentences on its scores that claim no more than the scores support.
 
 use report::format;
 use results::{HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
-/// Names in one list, beyond which the rest is counted.
+/// Maximum number of names in a list; the others are only counted.
 const MOST_NAMES: usize = 6;
 
-/// Of interpolation and of extrapolation: who predicts better than the best exponential by more than chance,
-/// who worse, and who cannot be told from it. The last stretch of a record is one trial, of which no test
-/// can be made.
+/// Lists, for interpolation and for extrapolation, the methods that predict better than the best exponential
+/// by more than chance, those that predict worse, and those that cannot be distinguished from it. The last
+/// stretch of a record is a single trial, which cannot be tested.
 pub(crate) fn verdict(study: &ProblemStudy, significance: f64) -> Vec<String> {
     let waits = |row: &PredictionRow| row.outcome.is_not_begun();
     if !study.methods.is_empty() && study.methods.iter().all(waits) {
@@ -101,7 +101,7 @@ fn tested(
     format!("{}.", parts.into_iter().flatten().collect::<Vec<_>>().join("; "))
 }
 
-/// Of a record: what the last stretch shows, and that it is one stretch.
+/// Describes the errors on the last stretch of a record, and states that this is a single stretch.
 fn single_stretch(study: &ProblemStudy) -> String {
     let reference = study.exponential.extrapolation.rms_log_error;
     let errors = || study.methods.iter().filter_map(|row| Some((row, extrapolation(row)?.rms_log_error)));
@@ -133,7 +133,7 @@ fn methods(count: usize) -> String {
 }
 
 fn listed(names: &[String]) -> String {
-    // No more than there are: the range is never beyond the end.
+    // The range never exceeds the length of the list.
     let shown = names.get(..names.len().min(MOST_NAMES)).unwrap_or_default().join(", ");
     match names.len().saturating_sub(MOST_NAMES) {
         0 => shown,

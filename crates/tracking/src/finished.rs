@@ -1,4 +1,4 @@
-//! A finished run as trackers see it: parameters, curves by step, numbers of the result, names.
+//! Finished run as trackers show it: parameters, curves by step, numbers of the result, tags.
 
 use runs::{RunError, RunFolder, Texts};
 use serde_json::Value;
@@ -6,15 +6,15 @@ use settings::{Document, SettingsError};
 use std::path::Path;
 use thiserror::Error;
 
-/// Why a run cannot be handed to a tracker.
+/// Reason why a run cannot be exported to a tracker.
 #[derive(Debug, Error)]
 pub enum TrackingError {
-    /// The folder is no finished run.
+    /// The folder is not a finished run.
     #[error("{folder}: is not a finished run: {problem}; expected a run's folder, as below reports/runs")]
     NoRun {
-        /// The folder.
+        /// Path of the folder.
         folder: String,
-        /// What is wrong with it.
+        /// Fault that was found in it.
         problem: String,
     },
     /// A file of the run cannot be read.
@@ -25,20 +25,20 @@ pub enum TrackingError {
     Settings(#[from] SettingsError),
 }
 
-/// A finished run.
+/// Finished run.
 #[derive(Debug)]
 pub struct Finished {
-    /// Name of its folder.
+    /// Name of the run's folder.
     pub name: String,
-    /// Whether it came to its end, rather than being stopped.
+    /// `true` if the run was completed, `false` if it was stopped.
     pub is_complete: bool,
-    /// When it began, in milliseconds since 1970.
+    /// Start time, in milliseconds since 1970.
     pub began_ms: i64,
-    /// When it ended, in milliseconds since 1970.
+    /// End time, in milliseconds since 1970.
     pub ended_ms: i64,
-    /// What was in force, by dotted key.
+    /// Resolved configuration, by dotted key.
     pub parameters: Vec<(String, String)>,
-    /// What was followed while it trained.
+    /// Values recorded during training.
     pub curves: Vec<Curve>,
     /// Numbers of the result, by dotted name.
     pub metrics: Vec<(String, f64)>,
@@ -48,7 +48,7 @@ pub struct Finished {
     pub files: Vec<(&'static str, String)>,
 }
 
-/// Those of a run's files that say what it was and what came out.
+/// Files of a run that show its configuration and its result.
 const SHOWN: [&str; 5] = ["config.toml", "result.json", "diagnosis.json", "trace.csv", "report.html"];
 
 /// Values by step.
@@ -61,10 +61,10 @@ pub struct Curve {
 }
 
 impl Finished {
-    /// Reads a run's folder; `is_complete` says whether its log ends with the end of the run.
+    /// Reads a run's folder; `is_complete` states whether its log ends with the end of the run.
     ///
     /// # Errors
-    /// [`TrackingError`] where a file of the run is missing or cannot be read.
+    /// [`TrackingError`] if a file of the run is missing or cannot be read.
     pub fn read(path: &Path, is_complete: bool) -> Result<Self, TrackingError> {
         let refused = |problem: String| TrackingError::NoRun { folder: path.display().to_string(), problem };
         let folder = RunFolder::open(path);
@@ -95,7 +95,7 @@ fn parameters(texts: &Texts) -> Result<Vec<(String, String)>, TrackingError> {
     Ok(document.leaves().iter().map(|leaf| (leaf.key.clone(), text(&leaf.value))).collect())
 }
 
-/// A curve for each column of numbers beside `step`; a table without steps has none.
+/// Returns a curve for each numeric column beside `step`; empty for a table without steps.
 fn curves(trace: &str) -> Result<Vec<Curve>, csv::Error> {
     let mut reader = csv::Reader::from_reader(trace.as_bytes());
     let names: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
@@ -108,7 +108,8 @@ fn curves(trace: &str) -> Result<Vec<Curve>, csv::Error> {
     Ok(others.filter_map(|(at, name)| Some(Curve { name, points: column(at)? })).collect())
 }
 
-/// Numbers and texts of a result by dotted name; rows of a list by their `id`, other lists not at all.
+/// Collects the numbers and texts of a result by dotted name. Rows of a list are named by their `id`; other
+/// lists are skipped.
 fn flatten(prefix: &str, value: &Value, numbers: &mut Vec<(String, f64)>, texts: &mut Vec<(String, String)>) {
     let dotted = |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
     match value {

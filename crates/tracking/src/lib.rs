@@ -1,6 +1,7 @@
-//! Finished runs for the trackers of experiments: event files of TensorBoard, MLflow's file store.
+//! Export of finished runs to experiment trackers: event files of TensorBoard, MLflow's file store.
 //!
-//! [`Finished::read`] takes a run's folder; [`tensorboard`] and [`mlflow`] say what to write and where, and write nothing.
+//! [`Finished::read`] reads a run's folder. [`tensorboard`] and [`mlflow`] return the content and the name of
+//! each file; they write nothing.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -1,4 +1,4 @@
-//! MLflow's file store: a folder for a run, a file for each parameter, metric and tag.
+//! MLflow's file store: a folder for each run, a file for each parameter, metric and tag.
 //!
 //! Format: `mlflow/store/tracking/file_store.py`.
 
@@ -7,25 +7,25 @@ use runs::digest;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The description of the experiment that runs belong to, the store's default one.
+/// Description file of the experiment that runs belong to, which is the store's default experiment.
 pub const EXPERIMENT: &str = "0/meta.yaml";
 
-/// MLflow refuses longer values of parameters.
+/// Length in characters above which MLflow refuses values of parameters.
 const LONGEST: usize = 6000;
 
-/// The folder of a run in the store.
+/// Returns the folder of a run in the store.
 #[must_use]
 pub fn folder(run: &Finished) -> String {
     format!("0/{}", id(run))
 }
 
-/// 32 hexadecimal digits; the same run has the same ones.
+/// Returns the id of a run, 32 hexadecimal digits; the same run always has the same id.
 fn id(run: &Finished) -> String {
     let digest = digest(format!("{} {}", run.name, run.began_ms).as_bytes());
     digest.rsplit(':').flat_map(str::chars).take(32).collect()
 }
 
-/// Names within a store that lies at a path, and contents.
+/// Returns the names and contents of a run's files; names are relative to `store`, the path of the store.
 #[must_use]
 pub fn files(run: &Finished, store: &Path) -> Vec<(String, String)> {
     let folder = folder(run);
@@ -54,14 +54,15 @@ pub fn files(run: &Finished, store: &Path) -> Vec<(String, String)> {
     files
 }
 
-/// Names take letters, digits and a few signs.
+/// Replaces characters that MLflow does not allow in names; letters, digits and a few signs are allowed.
 fn admitted(name: &str) -> String {
     let admit = |c: char| if c.is_ascii_alphanumeric() || "_-. ".contains(c) { c } else { '_' };
     name.chars().map(admit).collect()
 }
 
 fn meta(run: &Finished, artifacts: &Path) -> String {
-    /// Codes of `SourceType.LOCAL`, `RunStatus.FINISHED` and `RunStatus.KILLED` (`mlflow/protos/service.proto`).
+    /// Codes of `SourceType.LOCAL`, `RunStatus.FINISHED` and `RunStatus.KILLED`
+    /// (`mlflow/protos/service.proto`).
     const LOCAL: u8 = 4;
     const FINISHED: u8 = 3;
     const KILLED: u8 = 5;
@@ -85,7 +86,7 @@ fn meta(run: &Finished, artifacts: &Path) -> String {
     ])
 }
 
-/// The description of the store's default experiment, the store lying at a path.
+/// Returns the description of the default experiment of a store at the path `store`.
 #[must_use]
 pub fn experiment(run: &Finished, store: &Path) -> String {
     yaml(&[
@@ -98,7 +99,7 @@ pub fn experiment(run: &Finished, store: &Path) -> String {
     ])
 }
 
-/// A value as JSON writes it is YAML too.
+/// Encodes entries as YAML. Values are written as JSON, which is valid YAML.
 fn yaml(entries: &[(&str, Value)]) -> String {
     entries.iter().map(|(key, value)| format!("{key}: {value}\n")).collect()
 }

@@ -1,19 +1,22 @@
-//! TensorBoard's event files: records as TensorFlow frames them, each a protocol buffer of the message `Event`.
+//! TensorBoard's event files: records framed as TensorFlow does, each a protocol buffer of the message
+//! `Event`.
 //!
 //! Format: `tensorflow/core/lib/io/record_writer.h` for the frames, `tensorflow/core/util/event.proto` and
-//! `tensorflow/core/framework/summary.proto` for the messages. A scalar is a 32-bit float there: seven digits.
+//! `tensorflow/core/framework/summary.proto` for the messages. A scalar in this format is a 32-bit float,
+//! which has seven digits.
 
 use crate::Finished;
 
-/// The file of a run within its folder. The name has to hold `tfevents` for TensorBoard to find it.
+/// Returns the name of the event file within a run's folder. It has to contain `tfevents` for TensorBoard to
+/// find it.
 #[must_use]
 pub fn file_name(run: &Finished) -> String {
     format!("tensorboard/events.out.tfevents.{}.ringdown", run.began_ms / 1000)
 }
 
-/// The whole file: its version, the curves by step, and the result's numbers at the last step.
+/// Encodes the whole file: its version, the curves by step, and the result's numbers at the last step.
 ///
-/// No step has a time of its own in a run's folder, so all carry that of the run's begin.
+/// A run's folder holds no times of single steps, so all steps have the run's start time.
 #[must_use]
 pub fn events(run: &Finished) -> Vec<u8> {
     let time = run.began_ms as f64 / 1000.0;
@@ -25,7 +28,7 @@ pub fn events(run: &Finished) -> Vec<u8> {
         }
     }
     let ends = run.curves.iter().filter_map(|curve| curve.points.last());
-    // A run without curves has its results at its begin.
+    // A run without curves has its results at step 0.
     let last = ends.map(|(step, _)| *step).max().unwrap_or(0);
     for (name, value) in &run.metrics {
         let tag = format!("result/{}", name.replace('.', "/"));
@@ -34,7 +37,7 @@ pub fn events(run: &Finished) -> Vec<u8> {
     file
 }
 
-/// `Event { wall_time = 1, step = 2 }` and one field more.
+/// Encodes `Event { wall_time = 1, step = 2 }` with one more field.
 fn event(time: f64, step: i64, content: &[u8]) -> Vec<u8> {
     let mut message = key(1, 1);
     message.extend(time.to_le_bytes());
@@ -44,7 +47,7 @@ fn event(time: f64, step: i64, content: &[u8]) -> Vec<u8> {
     message
 }
 
-/// `Event.summary = 5` with one `Summary.value = 1 { tag = 1, simple_value = 2 }`.
+/// Encodes `Event.summary = 5` with one `Summary.value = 1 { tag = 1, simple_value = 2 }`.
 fn scalar(tag: &str, value: f64) -> Vec<u8> {
     let mut inner = bytes(1, tag.as_bytes());
     inner.extend(key(2, 5));
@@ -52,7 +55,7 @@ fn scalar(tag: &str, value: f64) -> Vec<u8> {
     bytes(5, &bytes(1, &inner))
 }
 
-/// A field with a length: text, bytes or a message.
+/// Encodes a field with a length: text, bytes or a message.
 fn bytes(field: u8, content: &[u8]) -> Vec<u8> {
     let mut message = key(field, 2);
     message.extend(varint(content.len() as u64));
@@ -64,7 +67,8 @@ fn key(field: u8, wire_type: u8) -> Vec<u8> {
     varint(u64::from(field) << 3 | u64::from(wire_type))
 }
 
-/// Seven bits a byte, the lowest first; the eighth says that more follow.
+/// Encodes a number with seven bits in each byte, lowest bits first; the eighth bit is set if more bytes
+/// follow.
 fn varint(mut value: u64) -> Vec<u8> {
     let mut digits = Vec::new();
     while value >= 0x80 {
@@ -75,7 +79,7 @@ fn varint(mut value: u64) -> Vec<u8> {
     digits
 }
 
-/// Length, its checksum, content, its checksum.
+/// Appends a frame: length, checksum of the length, content, checksum of the content.
 fn frame(file: &mut Vec<u8>, content: &[u8]) {
     let length = (content.len() as u64).to_le_bytes();
     file.extend(length);
@@ -84,14 +88,14 @@ fn frame(file: &mut Vec<u8>, content: &[u8]) {
     file.extend(masked_checksum(content).to_le_bytes());
 }
 
-/// CRC-32C, rotated and shifted, so that a checksum of data that holds checksums is none of these
-/// (`tensorflow/core/lib/hash/crc32c.h`).
+/// Computes the masked checksum: a CRC-32C, rotated and shifted, so that checksums of data that contain
+/// checksums differ from these (`tensorflow/core/lib/hash/crc32c.h`).
 fn masked_checksum(content: &[u8]) -> u32 {
     checksum(content).rotate_right(15).wrapping_add(0xa282_ead8)
 }
 
-/// CRC-32C (Castagnoli, IEEE Transactions on Communications 41 (1993) 883), bit by bit: a trace has some
-/// hundred kilobytes.
+/// Computes the CRC-32C (Castagnoli, IEEE Transactions on Communications 41 (1993) 883) bit by bit, which is
+/// fast enough for the few hundred kilobytes of a trace.
 fn checksum(content: &[u8]) -> u32 {
     const REFLECTED_POLYNOMIAL: u32 = 0x82f6_3b78;
     !content.iter().fold(!0, |state, byte| {
@@ -105,7 +109,7 @@ fn checksum(content: &[u8]) -> u32 {
 mod tests {
     use super::{checksum, varint};
 
-    /// RFC 3720, appendix B.4, and the check value of the Castagnoli polynomial.
+    /// Vectors of RFC 3720, appendix B.4, and the check value of the Castagnoli polynomial.
     #[test]
     fn the_checksum_is_that_of_published_vectors() {
         assert_eq!(checksum(&[0; 32]), 0x8a91_36aa);
@@ -114,7 +118,7 @@ mod tests {
         assert_eq!(checksum(b"123456789"), 0xe306_9283);
     }
 
-    /// The examples of the protocol buffers' documentation.
+    /// Examples of the protocol buffers' documentation.
     #[test]
     fn whole_numbers_are_written_seven_bits_a_byte() {
         assert_eq!(varint(1), [1]);

@@ -1,4 +1,4 @@
-//! The command line: every subcommand with its arguments.
+//! Command line: all subcommands with their arguments.
 
 use crate::commands::cite::CiteArguments;
 use crate::commands::compare::arguments::CompareArguments;
@@ -94,10 +94,10 @@ pub(crate) enum Command {
     Init(Box<InitArguments>),
     /// Lists estimators, learners of dynamics, effects or runs
     List {
-        /// What to list
+        /// Kind of things to list
         #[arg(value_enum, default_value_t = Listing::Estimators)]
         what: Listing,
-        /// Of runs, the folder that they lie in, or a sweep's [default: reports/runs]
+        /// With runs, the folder that holds them, or a sweep's folder [default: reports/runs]
         #[arg(value_name = "DIR")]
         folder: Option<PathBuf>,
         #[command(flatten)]

@@ -1,4 +1,4 @@
-//! A configuration of any task, read and checked, as the commands need it that do not run one.
+//! Reading and checking configurations of any task.
 
 use crate::error::TrainerError;
 use crate::options::{ExperimentArguments, Output};
@@ -16,7 +16,7 @@ use simulator::Plan;
 use std::path::{Path, PathBuf};
 use trials::TrialPlan;
 
-/// A configuration and what overrides it.
+/// Configuration and its overrides.
 #[derive(Debug, Args)]
 pub(crate) struct ConfigArguments {
     /// The experiment: a TOML file
@@ -31,10 +31,10 @@ pub(crate) struct ConfigArguments {
     pub(crate) output: Output,
 }
 
-/// The tasks that configurations are for.
+/// Tasks of configurations.
 const TASKS: [&str; 6] = ["estimate", "compare", "learn", "predict", "simulate", "trials"];
 
-/// A checked configuration.
+/// Checked configuration.
 pub(crate) enum Configured {
     /// One estimator, or a comparison.
     Experiment(Box<Experiment>),
@@ -49,7 +49,7 @@ pub(crate) enum Configured {
 }
 
 impl Configured {
-    /// Checks a document against the keys of the task that it asks for.
+    /// Checks a document against the keys of its task.
     pub(crate) fn resolve(document: &Document) -> Result<Self, TrainerError> {
         let classical = classical();
         Ok(if is_simulation(document) {
@@ -65,7 +65,7 @@ impl Configured {
         })
     }
 
-    /// Every value in force.
+    /// Returns all values in force.
     pub(crate) fn resolved(&self) -> &Resolved {
         match self {
             Self::Experiment(experiment) => &experiment.resolved,
@@ -77,10 +77,10 @@ impl Configured {
     }
 }
 
-/// That a document is for the task that a command runs, or names none that there is.
+/// Checks that a document is for the task that a command runs, or names no known task.
 ///
 /// # Errors
-/// [`TrainerError::OtherTask`] with the place that tells.
+/// [`TrainerError::OtherTask`] with the place that names the other task.
 pub(crate) fn check_task(
     document: &Document,
     wanted: &'static str,
@@ -88,7 +88,7 @@ pub(crate) fn check_task(
 ) -> Result<(), TrainerError> {
     let told = match document.get("task") {
         Some(leaf) => leaf.value.as_str().map(|task| (leaf, task)),
-        // What names no task and chooses an estimator is an estimation.
+        // A configuration that names no task and chooses an estimator is an estimation.
         None => document.get("estimator.name").map(|leaf| (leaf, "estimate")),
     };
     match told.filter(|(_, task)| *task != wanted && TASKS.contains(task)) {
@@ -103,34 +103,34 @@ pub(crate) fn check_task(
     }
 }
 
-/// Ids of the classical methods.
+/// Returns the ids of the classical methods.
 pub(crate) fn classical() -> Vec<&'static str> {
     CLASSICAL.iter().map(|route| route.id).collect()
 }
 
-/// What a sweep chooses from.
+/// Returns the registries that a sweep uses.
 pub(crate) fn registries() -> Registries<'static> {
     static IDS: std::sync::LazyLock<Vec<&'static str>> = std::sync::LazyLock::new(classical);
     Registries { estimators: ESTIMATORS, classical: &IDS, learners: LEARNERS }
 }
 
-/// Whether a configuration asks for a simulation.
+/// Returns `true` if a configuration asks for a simulation.
 pub(crate) fn is_simulation(document: &Document) -> bool {
     document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("simulate"))
 }
 
-/// Whether a configuration asks for trials.
+/// Returns `true` if a configuration asks for trials.
 pub(crate) fn is_trials(document: &Document) -> bool {
     document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("trials"))
 }
 
-/// Reads the configuration that the arguments name, overrides applied.
+/// Reads the configuration that the arguments name and applies the overrides.
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
     let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
     read_document(path, &arguments.overrides, arguments.run.seed)
 }
 
-/// Reads a configuration file with those that it stands on, and applies overrides in their order, then the seed's.
+/// Reads a configuration file with its base files, and applies the overrides in their order, then the seed.
 pub(crate) fn read_document(
     path: &Path,
     overrides: &[String],
@@ -146,7 +146,7 @@ pub(crate) fn read_document(
     Ok(document)
 }
 
-/// A configuration file as it is written, and what it says on those that it stands on.
+/// Reads the text of a configuration file, and the document that it forms with its base files.
 pub(crate) fn read_with_text(path: &Path) -> Result<(String, Document), TrainerError> {
     let file = path.display().to_string();
     let text = text_of(path).map_err(|problem| TrainerError::Config { file: file.clone(), problem })?;
@@ -166,7 +166,7 @@ fn text_of(path: &Path) -> Result<String, String> {
     })
 }
 
-/// The TOML file that a missing one is probably a misspelling of: in its folder, or in `configs`.
+/// Returns the TOML file of which a missing one is probably a misspelling: in its folder, or in `configs`.
 fn nearest_file(path: &Path) -> Option<String> {
     if path.exists() {
         return None;

@@ -1,9 +1,9 @@
-//! The options that every command takes, accepted without effect, and left out of the help, where a command has nothing for one to
-//! act on.
+//! Common options on every command. A command for which an option has no meaning accepts it without effect
+//! and does not show it in its help.
 
 use clap::{Arg, ArgAction, Command, value_parser};
 
-/// An option and the name of its value.
+/// Option without effect and the name of its value.
 type Idle = (&'static str, Option<&'static str>);
 
 const OPTIONS: [Idle; 6] = [
@@ -15,7 +15,7 @@ const OPTIONS: [Idle; 6] = [
     ("resume", None),
 ];
 
-/// The command line with every option on every command, so that a script may pass them without asking which.
+/// Adds all common options to every command, so that a script may pass them to any of them.
 pub(crate) fn everywhere(command: Command) -> Command {
     command.mut_subcommands(|command| {
         let missing = OPTIONS
@@ -30,7 +30,7 @@ fn idle((name, value): Idle) -> Arg {
     let option = Arg::new(name).long(name).hide(true);
     match value {
         None => option.action(ArgAction::SetTrue),
-        // Held to what the same option takes elsewhere.
+        // A number, as for the same option elsewhere.
         Some("N") => option.value_name("N").value_parser(value_parser!(u64)),
         Some(value) => option.value_name(value),
     }

@@ -1,4 +1,4 @@
-//! The command line: registry and wiring.
+//! Command line of Ringdown: registry and wiring.
 
 #![cfg_attr(
     test,
@@ -41,11 +41,12 @@ use terminal::console;
 /// Exit code for wrong input or usage.
 const WRONG_USAGE: u8 = 2;
 
-/// Runs the program with its command line, the program's own name first, and returns the exit code: 0 done, 1 a stated check
-/// failed, 2 wrong input or usage, 130 interrupted.
+/// Runs the program with its command line, which starts with the program's own name, and returns the exit
+/// code: 0 done, 1 a stated check failed, 2 wrong input or usage, 130 interrupted.
 ///
-/// Prints to standard output and standard error, answers Ctrl-C by itself, and may end the process when interrupted: it is for a
-/// process of its own. `program` is the file that starts it, where that is not the process's own.
+/// Prints to standard output and standard error, handles Ctrl-C itself, and may end the process when
+/// interrupted, so it needs a process of its own. `program` is the file that starts the program, if it is not
+/// the process's own executable.
 #[must_use]
 pub fn main_from(line: Vec<OsString>, program: Option<PathBuf>) -> u8 {
     program.into_iter().for_each(own_program::started_as);
@@ -60,7 +61,7 @@ pub fn main_from(line: Vec<OsString>, program: Option<PathBuf>) -> u8 {
     let arguments = match matched {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are no faults and go to standard output; clap knows which is which.
+            // Help and version are not errors and go to standard output; clap knows which is which.
             let _ = error.print();
             return if error.use_stderr() { WRONG_USAGE } else { 0 };
         }
@@ -74,13 +75,13 @@ pub fn main_from(line: Vec<OsString>, program: Option<PathBuf>) -> u8 {
     }
 }
 
-/// What the program calls itself: as Python's wheel installs it, or as cargo builds it.
+/// Returns the program's name: that of the Python wheel, or that of the cargo build.
 fn name_of(line: &[OsString]) -> &'static str {
     let stem = line.first().and_then(|own| Path::new(own).file_stem());
     if stem.is_some_and(|stem| stem == "ringdown") { "ringdown" } else { "trainer" }
 }
 
-/// An outcome whose result, if any was to be printed, reached standard output.
+/// Returns the outcome, or an error if a result did not reach standard output.
 fn printed(outcome: Outcome) -> Result<Outcome, TrainerError> {
     match console::lost() {
         None => Ok(outcome),

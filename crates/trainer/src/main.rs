@@ -1,4 +1,4 @@
-//! The program: its command line is the library's.
+//! Executable of the command line, which is implemented in the library.
 
 use std::process::ExitCode;
 

@@ -1,11 +1,11 @@
-//! Files and commands given in the wrong place, answered with the call that is meant.
+//! Files and commands given in the wrong place, answered with the intended command line.
 
 use settings::{Document, nearest};
 use std::path::Path;
 use workflow::{is_log, is_run, logs};
 
-/// The message for a command line whose first words say what is meant, though no command takes them so; `None` where the
-/// command line is to be parsed as usual.
+/// Returns a message for a command line whose intention is clear from its first words, but which no command
+/// accepts; `None` if it is to be parsed as usual.
 pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
     let (first, rest) = words.split_first()?;
     if first.starts_with('-') {
@@ -47,7 +47,7 @@ pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
     })
 }
 
-/// A finished run, or a folder of logs, given as a configuration.
+/// Handles a finished run, or a folder of logs, given as a configuration.
 fn folder(path: &Path, shown: &str) -> Option<String> {
     if is_run(path) {
         return Some(format!(
@@ -63,7 +63,7 @@ fn folder(path: &Path, shown: &str) -> Option<String> {
     })
 }
 
-/// A TOML file among the records of a diagnosis.
+/// Handles a TOML file among the records of a diagnosis.
 fn configuration_among_records(words: &[String]) -> Option<String> {
     for (word, path) in positional(words) {
         if path.extension().is_none_or(|extension| extension != "toml") {
@@ -83,7 +83,7 @@ fn configuration_among_records(words: &[String]) -> Option<String> {
     None
 }
 
-/// An option of `trainer diagnose` without that word in front.
+/// Handles an option of `trainer diagnose` without that command in front.
 fn of_a_diagnosis(words: &[String]) -> Option<String> {
     let option = words.iter().find(|word| ["--nominal", "--batch", "--rigs"].contains(&word.as_str()))?;
     Some(format!(
@@ -91,7 +91,7 @@ fn of_a_diagnosis(words: &[String]) -> Option<String> {
     ))
 }
 
-/// A record in the place of the nominal simulator.
+/// Handles a record in the place of the nominal simulator.
 fn record_as_nominal(words: &[String]) -> Option<String> {
     let after = words.iter().zip(words.iter().skip(1)).find(|(option, _)| *option == "--nominal");
     let joined = words.iter().find_map(|word| word.strip_prefix("--nominal="));
@@ -104,7 +104,8 @@ fn record_as_nominal(words: &[String]) -> Option<String> {
     })
 }
 
-/// A nominal simulator without an inertia, as `trainer init` writes it, in the place of a plan of records.
+/// Handles a nominal simulator without an inertia, as `trainer init` writes it, in the place of a plan of
+/// records.
 fn nominal_as_plan(words: &[String]) -> Option<String> {
     let (word, path) = positional(words).next()?;
     let document = Document::parse("", &std::fs::read_to_string(path).ok()?).ok()?;
@@ -116,7 +117,7 @@ fn nominal_as_plan(words: &[String]) -> Option<String> {
     })
 }
 
-/// A TOML file in the place of a log.
+/// Handles a TOML file in the place of a log.
 fn toml_as_log(words: &[String]) -> Option<String> {
     let (word, path) =
         positional(words).find(|(_, path)| path.extension().is_some_and(|end| end == "toml"))?;
@@ -127,7 +128,7 @@ fn toml_as_log(words: &[String]) -> Option<String> {
     Some(format!("{word} {what}, not a log; `trainer init LOG` looks at a log, `{call}` uses this file"))
 }
 
-/// A record that is not there, with the nearest name in its folder.
+/// Handles a missing record, with the nearest name in its folder.
 fn absent(words: &[String]) -> Option<String> {
     let (word, path) = positional(words).find(|(_, path)| !path.exists())?;
     let own = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -142,7 +143,8 @@ fn absent(words: &[String]) -> Option<String> {
     Some(format!("{word}: there is no such file; did you mean {shown}?"))
 }
 
-/// Words that are no options and follow none: an option without a value hides the word behind it, and nothing is said of that.
+/// Returns the words that are not options and do not follow one. A word after an option without a value is
+/// missed, and no message is given for it.
 fn positional(words: &[String]) -> impl Iterator<Item = (&str, &Path)> {
     let before = std::iter::once("").chain(words.iter().map(String::as_str));
     let follows_none = |(before, word): &(&str, &String)| {
@@ -152,7 +154,7 @@ fn positional(words: &[String]) -> impl Iterator<Item = (&str, &Path)> {
     before.zip(words).filter(follows_none).map(|(_, word)| (word.as_str(), Path::new(word)))
 }
 
-/// Whether a file is TOML with the keys of a nominal simulator.
+/// Returns `true` if a file is TOML with the keys of a nominal simulator.
 fn is_nominal(path: &Path) -> bool {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let known = ["inertia", "stiffness", "natural_frequency", "period"];

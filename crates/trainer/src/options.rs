@@ -1,4 +1,4 @@
-//! Options that several commands take.
+//! Options shared by several commands.
 
 use crate::error::TrainerError;
 use crate::terminal::console;
@@ -8,7 +8,7 @@ use runs::{Disk, RunFolder, default_root};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Running the experiment of a configuration.
+/// Runs the experiment of a configuration.
 #[derive(Debug, Args)]
 pub(crate) struct ExperimentArguments {
     /// The experiment: a TOML file
@@ -20,12 +20,12 @@ pub(crate) struct ExperimentArguments {
     pub(crate) run: RunOptions,
     #[command(flatten)]
     pub(crate) output: Output,
-    /// Where folders are made: the system's disk, and in tests one that fails.
+    /// Disk on which folders are created: the system's disk or, in tests, one that fails.
     #[arg(skip)]
     pub(crate) disk: Disk,
 }
 
-/// What every command that runs a configuration takes.
+/// Options of every command that runs a configuration.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct RunOptions {
     /// Folder for the output: new or empty [default: a new one below reports/runs]
@@ -42,7 +42,7 @@ pub(crate) struct RunOptions {
     pub(crate) threads: Option<u16>,
 }
 
-/// What is printed.
+/// Options for the printed output.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct Output {
     /// Prints no progress and no table
@@ -54,7 +54,7 @@ pub(crate) struct Output {
 }
 
 impl ExperimentArguments {
-    /// The folder that the arguments name, or a new one below the default root.
+    /// Creates the folder that the arguments name, or a new one below the default root.
     pub(crate) fn new_folder(&self, name: &str) -> Result<RunFolder, TrainerError> {
         Ok(match &self.run.out {
             Some(path) => RunFolder::create_at_on(&self.disk, path)?,
@@ -62,7 +62,7 @@ impl ExperimentArguments {
         })
     }
 
-    /// As many threads as asked for.
+    /// Creates a pool with the number of threads asked for.
     pub(crate) fn thread_pool(&self) -> Result<ThreadPool, TrainerError> {
         rayon::ThreadPoolBuilder::new()
             .num_threads(self.run.threads.map_or(0, usize::from))
@@ -72,7 +72,7 @@ impl ExperimentArguments {
 }
 
 impl Output {
-    /// Prints a result as asked for: as JSON, as the given text, or not at all.
+    /// Prints a result as JSON, as the given text, or not at all, depending on the options.
     pub(crate) fn print(
         self,
         result: &impl Serialize,

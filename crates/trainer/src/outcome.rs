@@ -1,18 +1,18 @@
-//! How a command ends.
+//! Outcomes of commands.
 
-/// How a command that gave a result ended.
+/// Outcome of a command that gave a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// Done, and every stated check holds.
     Done,
     /// Done, but a stated check failed.
     CheckFailed,
-    /// Stopped on request; the best so far is saved.
+    /// Stopped on request; the best result so far is saved.
     Interrupted,
 }
 
 impl Outcome {
-    /// That of a run whose stated checks hold or do not, unless it was stopped.
+    /// Returns the outcome of a run from the result of its stated checks, unless it was interrupted.
     pub(crate) fn of(interrupted: bool, holds: bool) -> Self {
         match (interrupted, holds) {
             (true, _) => Self::Interrupted,
@@ -21,7 +21,7 @@ impl Outcome {
         }
     }
 
-    /// The exit code that says so.
+    /// Returns the exit code of this outcome.
     pub(crate) fn exit_code(self) -> u8 {
         match self {
             Self::Done => 0,

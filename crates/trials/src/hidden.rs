@@ -1,18 +1,18 @@
-//! What a case hides.
+//! Hidden truths of cases.
 
 use dynamics::Active;
 use serde::{Deserialize, Serialize};
 
-/// The `schema` of a hidden truth's text.
+/// Value of the `schema` field in the text of a hidden truth.
 pub const HIDDEN_SCHEMA: &str = "ringdown.trial/1";
 
-/// The kind of a case: what is asked of the diagnosis there.
+/// Kind of case, which determines what a right answer is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Bank {
     /// Nothing is missing and the nominal simulator is exact.
     None,
-    /// Nothing is missing; the nominal coefficients are off.
+    /// Nothing is missing; the nominal coefficients are wrong.
     Calibration,
     /// One effect of the vocabulary.
     Single,
@@ -20,39 +20,40 @@ pub enum Bank {
     Pair,
     /// One effect of the vocabulary that the diagnosis is told not to consider: `unknown` is right.
     LeftOut,
-    /// Something outside the vocabulary: `unknown` is right.
+    /// A law outside the vocabulary: `unknown` is right.
     Foreign,
-    /// One effect, several releases of one system.
+    /// One effect; several releases of one system.
     Releases,
-    /// One effect, a measured input.
+    /// One effect; a measured input.
     Driven,
-    /// One effect by a law unlike the vocabulary's own, with another integrator and correlated disturbances.
+    /// One effect by a law that differs from the vocabulary's, with another integrator and correlated
+    /// disturbances.
     Stressed,
-    /// One effect added to what a diagnosis left over of a measured record.
+    /// One effect, added to the residual that a diagnosis left of a measured record.
     Measured,
-    /// One effect in records of a physics engine.
+    /// One effect, in records of a physics engine.
     Engine,
-    /// Two to six effects of very different size, beside smooth laws outside the vocabulary.
+    /// Two to six effects of very different size, together with smooth laws outside the vocabulary.
     Composite,
-    /// Rigs of a folder that another program made: composite ones and simpler ones.
+    /// Rigs from a folder that another program made: composite ones and simpler ones.
     Rigs,
 }
 
-/// What an answer is held to.
+/// Kind of answer that a case asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Asked {
     /// Nothing is missing.
     Nothing,
     /// Effects of the vocabulary are hidden.
     Effects,
-    /// What acts is not to be named: `unknown`, or a class that the truth allows.
+    /// The acting law has no name: right is `unknown`, or a class that the truth allows.
     Unknown,
-    /// A law outside the vocabulary acts that is small: no name, whatever the status.
+    /// A small law outside the vocabulary acts: no name is right, whatever the status.
     NoName,
 }
 
 impl Hidden {
-    /// The truth of a case in which nothing acts; struct update adds what does.
+    /// Returns the truth of a case in which nothing acts; acting effects are added by struct update.
     pub(crate) fn nothing(bank: Bank, noise: f64, made: String) -> Self {
         Self {
             schema: HIDDEN_SCHEMA.to_owned(),
@@ -70,7 +71,7 @@ impl Hidden {
         }
     }
 
-    /// What the case asks of an answer.
+    /// Returns the kind of answer that the case asks for.
     pub(crate) fn asked(&self) -> Asked {
         match self {
             Self { bank: Bank::LeftOut, .. } | Self { foreign: Some(_), .. } => Asked::Unknown,
@@ -82,7 +83,7 @@ impl Hidden {
 }
 
 impl Bank {
-    /// Its name in results.
+    /// Returns the name used in results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -103,85 +104,90 @@ impl Bank {
     }
 }
 
-/// Hidden truth of a case: effects, and whatever else its records follow from.
+/// Hidden truth of a case: the effects, and everything else that determines its records.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hidden {
-    /// [`HIDDEN_SCHEMA`].
+    /// Schema of the text, [`HIDDEN_SCHEMA`].
     pub schema: String,
-    /// The kind of case.
+    /// Kind of case.
     pub bank: Bank,
-    /// The hidden effects of the vocabulary, the most detectable first; empty where none is.
+    /// Hidden effects of the vocabulary, the most detectable first; empty if there are none.
     pub effects: Vec<HiddenEffect>,
-    /// Law from outside the vocabulary.
+    /// Law outside the vocabulary for which `unknown` is right; `None` if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foreign: Option<Foreign>,
-    /// Smooth laws outside the vocabulary that act beside the hidden effects, or alone where they are too small to ask
-    /// for an answer.
+    /// Smooth laws outside the vocabulary that act beside the hidden effects, or alone if they are too small
+    /// to ask for an answer.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlisted: Vec<Unlisted>,
-    /// Ids of classes that an answer may name for what acts from outside the vocabulary.
+    /// Identifiers of the classes that an answer may name for a law outside the vocabulary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowed: Vec<String>,
-    /// Ids of effects of the measurement chain that come with records of every bank alike. They count neither for nor
-    /// against an answer.
+    /// Identifiers of measurement-chain effects that occur in records of every bank (nuisances). They count
+    /// neither for nor against an answer.
     pub nuisances: Vec<String>,
-    /// True if the nominal coefficients are off.
+    /// `true` if the nominal coefficients are wrong.
     pub miscalibrated: bool,
-    /// The effect that the diagnosis is told not to consider.
+    /// Identifier of the effect that the diagnosis is told not to consider; `None` for no such effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without: Option<String>,
-    /// Standard deviation of the sensor's white noise, in the observed quantity's unit.
+    /// Standard deviation of the sensor's white noise, in the unit of the observed quantity.
     pub noise: f64,
-    /// The system as it is, where it can be said in the vocabulary: a repaired simulator is laid beside its motion.
+    /// Truths of the records, if the system can be expressed in the vocabulary; otherwise empty. A repaired
+    /// simulator is compared with their motion.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<truth::Truth>,
-    /// Origin of the records, in words; for whoever repeats one.
+    /// Origin of the records in words, for repeating the case.
     pub made: String,
 }
 
-/// Something outside the vocabulary.
+/// Law outside the vocabulary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Foreign {
-    /// Law, in words.
+    /// Description of the law.
     pub law: String,
-    /// Its size in noise units: what neither a recalibration nor the vocabulary nearest to it can absorb.
+    /// Size in noise units: the part that neither a recalibration nor the nearest effects of the vocabulary
+    /// can absorb.
     pub detectability: f64,
 }
 
-/// A smooth law outside the vocabulary.
+/// Smooth law outside the vocabulary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unlisted {
-    /// Law, in words.
+    /// Description of the law.
     pub law: String,
-    /// Root mean square of what no recalibration can absorb of it, over the noise's standard deviation.
+    /// Root mean square of the part that no recalibration can absorb, divided by the noise's standard
+    /// deviation (× noise).
     pub floors: f64,
-    /// Id of the class of effects that it belongs to by its mechanism, if it does to one.
+    /// Identifier of the class of effects to which the law belongs by its mechanism; `None` if to none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub class: Option<String>,
 }
 
-/// A hidden effect.
+/// Hidden effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HiddenEffect {
-    /// Its id in the vocabulary.
+    /// Identifier in the vocabulary.
     pub id: String,
-    /// Its parameters by the vocabulary's law, or the nearest to them where the law is another, in SI units.
+    /// Parameters of the vocabulary's law, or the closest ones if another law acted, in SI units.
     pub parameters: Vec<f64>,
-    /// The law that acted: `vocabulary`, or its name.
+    /// Law that acted: `vocabulary`, or the name of another law.
     pub law: String,
-    /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration
-    /// can absorb of it, over the noise's standard deviation.
+    /// Size in noise units: the root of the sum of squares, over all samples, of the part that no
+    /// recalibration can absorb, divided by the noise's standard deviation.
     pub detectability: f64,
-    /// Size as a root mean square in place of the root of the sum: × noise. Only where several effects act.
+    /// Size as a root mean square instead of a root of the sum of squares (× noise); `None` unless several
+    /// effects act.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floors: Option<f64>,
 }
 
 impl HiddenEffect {
-    /// Effects that act by the vocabulary's law, each with its detectability, the most detectable first.
+    /// Returns effects that act by the vocabulary's law, each with its detectability, the most detectable
+    /// first.
     pub(crate) fn by_the_vocabulary(hidden: &[(Active, f64)]) -> Vec<Self> {
         let effect = |(active, detectability): &(Active, f64)| Self {
             id: active.id().to_owned(),

@@ -1,9 +1,9 @@
-//! Trials of the diagnosis on records whose effect is withheld.
+//! Blind trials of the diagnosis, on records whose effect is withheld.
 //!
-//! Two rooms with a door between them that opens once: `make` draws cases, each a folder of records and a
-//! nominal simulator with a sealed [`Hidden`] truth; `score` lays answers beside opened truths. What either knows of an
-//! effect stands in that effect's file below `effects`. Neither reaches the diagnosis: that runs as a process of its own on
-//! the folders.
+//! `make` draws cases: each is a folder of records and a nominal simulator, with a sealed [`Hidden`] truth.
+//! `score` compares answers with truths, which are opened only once. Everything that both need to know of an
+//! effect stands in that effect's file below `effects`. Neither part calls the diagnosis, which runs as a
+//! separate process on the folders.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -1,8 +1,8 @@
-//! What generated a simulated record, as a sealed type.
+//! Truth of a simulated record, as a sealed type.
 //!
-//! A [`Truth`] says everything that a record's bits follow from. It travels as a [`Sealed`] truth, which shows
-//! its SHA-256 digest and nothing else until it is opened; opening checks the digest. Who makes records,
-//! scores answers or runs trials may reach this crate; whoever estimates or diagnoses may not
+//! A [`Truth`] holds everything that determines a record's bits. It travels as a [`Sealed`] truth, which
+//! shows only its SHA-256 digest until it is opened; opening verifies the digest. Crates that make records,
+//! score answers or run trials may depend on this crate; crates that estimate or diagnose may not
 //! (`tests/architecture.rs`).
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]

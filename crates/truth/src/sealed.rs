@@ -1,4 +1,4 @@
-//! A value that shows its digest only.
+//! Sealed values: JSON text that shows only its digest.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -7,36 +7,36 @@ use std::fmt;
 use std::marker::PhantomData;
 use thiserror::Error;
 
-/// Why a sealed value could not be made or opened.
+/// Reason why a value could not be sealed or opened.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SealError {
-    /// The text is not the one that was sealed.
+    /// The text differs from the one that was sealed.
     #[error(
         "the seal is broken: the text has the digest {found}, not {stated}; it was changed after sealing"
     )]
     Broken {
-        /// The digest stated.
+        /// Digest stated by the seal.
         stated: String,
-        /// The digest of the text.
+        /// Digest of the text.
         found: String,
     },
-    /// The text under an intact seal is not what is expected.
+    /// The seal is intact, but the text does not hold a value of the expected type.
     #[error("the sealed text cannot be read: {problem}; it was written by another version of the program")]
     Unreadable {
-        /// What the reader says.
+        /// Message of the JSON parser.
         problem: String,
     },
-    /// The value has no text.
+    /// The value cannot be written as JSON.
     #[error("the value cannot be sealed: {problem} (a fault of the program, please report it)")]
     Unwritable {
-        /// What the writer says.
+        /// Message of the JSON writer.
         problem: String,
     },
 }
 
-/// A value as JSON text under its SHA-256 digest, `sha256:` and 64 hexadecimal digits.
+/// A value as JSON text, sealed with its SHA-256 digest (`sha256:` and 64 hexadecimal digits).
 ///
-/// It can be stored and handed on unseen: neither `Debug` nor `Display` shows more than the digest.
+/// It can be stored and passed on unseen: `Debug` and `Display` show only the digest.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Sealed<T> {
     text: String,
@@ -45,19 +45,21 @@ pub struct Sealed<T> {
 }
 
 impl<T> Sealed<T> {
-    /// A sealed value that was stored as text and digest. Whether they belong together shows on opening.
+    /// Restores a sealed value from its stored text and digest. [`open`](Self::open) checks whether they
+    /// match.
     #[must_use]
     pub fn from_stored(text: String, digest: String) -> Self {
         Self { text, digest, content: PhantomData }
     }
 
-    /// The digest: what may be published before the value.
+    /// Returns the digest, which may be published before the value.
     #[must_use]
     pub fn digest(&self) -> &str {
         &self.digest
     }
 
-    /// The text to be stored. Whoever reads it knows the value; it belongs apart from what the value explains.
+    /// Returns the text to store. It reveals the value, so store it apart from the records that the value
+    /// explains.
     #[must_use]
     pub fn text_to_store(&self) -> &str {
         &self.text
@@ -68,7 +70,7 @@ impl<T: Serialize + DeserializeOwned> Sealed<T> {
     /// Seals a value.
     ///
     /// # Errors
-    /// [`SealError::Unwritable`] where the value has no JSON.
+    /// [`SealError::Unwritable`] if the value cannot be written as JSON.
     pub fn seal(value: &T) -> Result<Self, SealError> {
         let mut text = serde_json::to_string_pretty(value)
             .map_err(|error| SealError::Unwritable { problem: error.to_string() })?;
@@ -80,8 +82,8 @@ impl<T: Serialize + DeserializeOwned> Sealed<T> {
     /// Opens the seal.
     ///
     /// # Errors
-    /// [`SealError::Broken`] where a single byte differs from what was sealed, [`SealError::Unreadable`] where
-    /// the text is intact but is no such value.
+    /// [`SealError::Broken`] if a single byte differs from what was sealed; [`SealError::Unreadable`] if the
+    /// text is intact but does not hold a value of this type.
     pub fn open(&self) -> Result<T, SealError> {
         let found = digest(&self.text);
         if found != self.digest {
@@ -91,7 +93,8 @@ impl<T: Serialize + DeserializeOwned> Sealed<T> {
     }
 }
 
-/// SHA-256 of a text as seals and manifests write it: `sha256:` and 64 hexadecimal digits.
+/// Returns the SHA-256 of a text in the form used by seals and manifests: `sha256:` and 64 hexadecimal
+/// digits.
 #[must_use]
 pub fn digest(text: &str) -> String {
     let hex: String = Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
@@ -119,7 +122,7 @@ mod tests {
         let sealed = Sealed::seal(&vec![0.1_f64, 1e-300, -3.5]).unwrap();
         assert_eq!(sealed.open().unwrap(), [0.1, 1e-300, -3.5]);
         assert!(!format!("{sealed:?} {sealed}").contains("3.5"));
-        // SHA-256 of the five bytes `true\n`, by another program.
+        // SHA-256 of the five bytes `true\n`, computed by another program.
         let known = "sha256:a17fcf0a2f50e2d495e4f90ce263410edc183add6c62699a2facbccf60410f74";
         assert_eq!(Sealed::seal(&true).unwrap().digest(), known);
     }

@@ -1,56 +1,56 @@
-//! Everything that a simulated record's bits follow from.
+//! Truth of a simulated record: everything that determines its bits.
 
 use dynamics::chain::Chain;
 use dynamics::{Start, System};
 use serde::{Deserialize, Serialize};
 
-/// The `schema` of a truth's text.
+/// Value of the `schema` field in the text of a truth.
 pub const TRUTH_SCHEMA: &str = "ringdown.truth/1";
 
-/// Truth of a record: everything that generated it. Simulating it again gives the record to the bit.
+/// Truth of a record: everything that generated it. Simulating it again reproduces the record bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Truth {
-    /// [`TRUTH_SCHEMA`].
+    /// Schema of the text, [`TRUTH_SCHEMA`].
     pub schema: String,
-    /// The oscillator as it is, with the effects that act in it.
+    /// The true oscillator, with the effects that act in it.
     pub system: System,
-    /// Where the motion starts.
+    /// Initial state of the motion.
     pub start: Start,
-    /// The input that drives it; absent for a free motion.
+    /// Input that drives the system; `None` for a free motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excitation: Option<Excitation>,
     /// Measurement chain between the motion and the file.
     pub chain: Chain,
-    /// When and how exactly the file's samples are taken.
+    /// Sampling of the record, and decimals of its numbers in the file.
     pub sampling: Sampling,
-    /// Where its random draws come from.
+    /// Branch of the seed tree that the random draws come from.
     pub draws: Draws,
 }
 
-/// Sampling and notation of a record.
+/// Sampling of a record, and decimals of its numbers in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sampling {
-    /// Samples per second of the sensor's own clock.
+    /// Sample rate of the sensor's own clock, in Hz.
     pub rate_hz: f64,
     /// Number of samples before any is lost.
     pub samples: usize,
     /// Reading of the recorder's clock at the first sample, in seconds.
     pub first_stamp_s: f64,
-    /// Decimals of a stamp in seconds.
+    /// Decimals of a timestamp in seconds.
     pub stamp_decimals: u8,
     /// Decimals of a value in its SI unit.
     pub value_decimals: u8,
 }
 
-/// The branch of the tree of seeds that a record's chain draws from.
+/// Branch of the seed tree that a record's measurement chain draws from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Draws {
-    /// The seed as configured.
+    /// Root seed as configured.
     pub seed: u64,
-    /// The names on the way from the root.
+    /// Names along the path from the root.
     pub branch: Vec<String>,
 }
 
@@ -62,26 +62,27 @@ pub enum Waveform {
     Sine,
     /// A sine whose frequency rises linearly over the record.
     Chirp,
-    /// Steps between plus and minus the amplitude.
+    /// Square wave that switches between plus and minus the amplitude.
     Square,
 }
 
-/// An input that is held between the sensor's samples.
+/// Input that is held between the sensor's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Excitation {
-    /// The shape.
+    /// Shape over time.
     pub waveform: Waveform,
-    /// Largest value, in the input's unit.
+    /// Amplitude, in the input's unit.
     pub amplitude: f64,
-    /// Frequency in hertz; of a chirp, at the start.
+    /// Frequency in hertz; for a chirp, the frequency at the start.
     pub frequency_hz: f64,
-    /// Frequency at the end of a chirp, in hertz; otherwise that at the start.
+    /// Frequency at the end of a chirp, in hertz; for other shapes, equal to `frequency_hz`.
     pub end_frequency_hz: f64,
 }
 
 impl Excitation {
-    /// The input at a time after the first sample, in a record of some duration; both in seconds.
+    /// Returns the input at `time_s` seconds after the first sample of a record that lasts `duration_s`
+    /// seconds.
     #[must_use]
     pub fn at(&self, time_s: f64, duration_s: f64) -> f64 {
         let sweep = match self.waveform {

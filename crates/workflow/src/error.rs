@@ -1,4 +1,4 @@
-//! Reasons why records and a nominal simulator give no answer.
+//! Errors of answering a question from records and a nominal simulator.
 
 use diagnosis::DiagnosisError;
 use identify::IdentifyError;
@@ -6,106 +6,106 @@ use record::RecordError;
 use settings::SettingsError;
 use thiserror::Error;
 
-/// Reason why records and a nominal simulator give no answer; messages name the options of the command line.
+/// Reason why records and a nominal simulator give no answer. Messages name the options of the command line.
 #[derive(Debug, Error)]
 pub enum WorkflowError {
-    /// A record that cannot be read; its message names options in place of configuration keys.
+    /// A record cannot be read; the message names options in place of configuration keys.
     #[error("{}", in_options(&.0.to_string()))]
     Record(RecordError),
-    /// A nominal simulator's file with a wrong key or value.
+    /// The file of a nominal simulator has a wrong key or value.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// Records that say nothing, or are not of the nominal system.
+    /// The records contain no usable motion, or do not belong to the nominal system.
     #[error("{file}: {}", source.to_string().replace("unit = \"deg\"", "--unit deg"))]
     Diagnosis {
-        /// The record that the message is about.
+        /// Record that the message is about.
         file: String,
-        /// The fault.
+        /// Fault that was found.
         source: DiagnosisError,
     },
-    /// A driven system whose record holds no input.
+    /// The nominal system is driven, but its record holds no input.
     #[error(
         "{file}: the nominal simulator has an input_gain, so an input drives the system, but the record has no input \
          column; name it with --input (the header has {columns})"
     )]
     MissingInput {
-        /// The record.
+        /// Name of the record.
         file: String,
-        /// The columns that it has.
+        /// Columns of the record.
         columns: String,
     },
-    /// A record in a unit that the nominal coordinate cannot have.
+    /// The record has a unit that the nominal coordinate cannot have.
     #[error(
         "{file}: the record is in {found}, the nominal simulator's coordinate asks for {expected}; name the column \
          with --value, its unit with --unit, or set `coordinate` in the nominal simulator's file"
     )]
     OtherUnit {
-        /// The record.
+        /// Name of the record.
         file: String,
         /// Unit of the record.
         found: &'static str,
         /// Unit of the nominal coordinate.
         expected: &'static str,
     },
-    /// A file that is no nominal simulator.
+    /// The file is not a nominal simulator.
     #[error(
         "{file}: cannot be used: {problem}; expected a TOML file with inertia, damping, stiffness and rest_angle"
     )]
     Nominal {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// Its fault.
+        /// Fault that was found.
         problem: String,
     },
-    /// A configuration in the place of a nominal simulator.
+    /// The file given as nominal simulator is the configuration of an experiment.
     #[error(
         "{file}: is the configuration of an experiment, which `{command}` runs, not a nominal simulator; --nominal takes a TOML \
          file with inertia, damping, stiffness and rest_angle: `trainer init LOG` writes one"
     )]
     NominalIsConfiguration {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// The command that runs it.
+        /// Command that runs the configuration.
         command: String,
     },
-    /// A folder that stands for no records.
+    /// The folder holds no logs, or is that of a finished run.
     #[error("{folder}: {problem}; {remedy}")]
     NoLogs {
-        /// The folder.
+        /// Path of the folder.
         folder: String,
-        /// Its fault.
+        /// Fault that was found.
         problem: String,
-        /// What to name in its place.
+        /// Advice on what to name instead.
         remedy: String,
     },
-    /// One record given twice.
+    /// One record is given twice.
     #[error(
         "{first} and {second} are the same record ({digest}), which would count as two that agree; name each record once"
     )]
     SameRecord {
-        /// The first of the two.
+        /// First of the two files.
         first: String,
-        /// The other one.
+        /// Second of the two files.
         second: String,
-        /// Their digest.
+        /// Digest of both.
         digest: String,
     },
-    /// A record that shows no oscillator.
+    /// The record shows no oscillator.
     #[error("{file}: {source}")]
     Identify {
-        /// The record.
+        /// Name of the record.
         file: String,
-        /// The fault.
+        /// Fault that was found.
         source: IdentifyError,
     },
 }
 
-/// A sentence that names keys of the configuration's section `data`, with the command line's options in their place:
+/// Replaces keys of the configuration's section `data` in a sentence by the options of the command line:
 /// `data.time_unit` becomes --time-unit.
 #[must_use]
 pub fn in_options(text: &str) -> String {
     let mut parts = text.split("`data.");
-    // Splitting gives at least one part.
+    // Splitting returns at least one part.
     let mut told = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('`').unwrap_or((part, ""));

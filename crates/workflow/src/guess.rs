@@ -1,11 +1,11 @@
-//! A first guess of a nominal simulator, and the files that `trainer init` writes.
+//! First guess of a nominal simulator, and the files that `trainer init` writes.
 
 use dynamics::Coordinate;
 use identify::{Basis, Estimated, LinearOscillator};
 use record::two_digits;
 use std::fmt::Write;
 
-/// A guess of a nominal simulator as a commented `nominal.toml`.
+/// Writes a guess of a nominal simulator as a commented `nominal.toml`.
 #[must_use]
 pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordinate) -> String {
     let (position, inertia, torque) = match coordinate {
@@ -57,12 +57,13 @@ pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordi
     text
 }
 
-/// A damping that a simulator can have: that of a swing that grows is none.
+/// Returns a damping that a simulator can have: the negative damping of a growing swing becomes zero.
 fn passive(damping: Estimated) -> Estimated {
     Estimated { value: damping.value.max(0.0), ..damping }
 }
 
-/// A configuration that estimates the damping of the record, with the keys that say how to read it.
+/// Writes a configuration that estimates the damping ratio of the record, including the keys that say how to
+/// read it.
 #[must_use]
 pub fn configuration(path: &str, reading: &[(&str, String)]) -> String {
     let mut text = format!(
@@ -85,12 +86,12 @@ pub fn configuration(path: &str, reading: &[(&str, String)]) -> String {
     text
 }
 
-/// A text as TOML writes it.
+/// Quotes a text for TOML.
 fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// The coordinate's name in configurations.
+/// Returns the coordinate's name in configurations.
 #[must_use]
 pub fn name(coordinate: Coordinate) -> &'static str {
     match coordinate {
@@ -99,7 +100,7 @@ pub fn name(coordinate: Coordinate) -> &'static str {
     }
 }
 
-/// The basis of the guess, in words: turning points or windows.
+/// Describes the basis of the guess in words: turning points or windows.
 #[must_use]
 pub fn basis(oscillator: &LinearOscillator) -> String {
     match oscillator.basis {
@@ -108,10 +109,10 @@ pub fn basis(oscillator: &LinearOscillator) -> String {
     }
 }
 
-/// A number to the second digit of its standard error, as TOML reads it.
+/// Formats a number up to the second digit of its standard error, in a form that TOML can read.
 fn digits(estimated: Estimated) -> String {
     let Estimated { value, std_error } = estimated;
-    // Sixteen digits hold any double; an error of zero, or none, asks for all that are worth reading.
+    // At most eleven significant digits; ten if the standard error is zero or missing.
     let wanted = if std_error > 0.0 && value != 0.0 {
         (value.abs().log10().floor() - std_error.log10().floor()).clamp(0.0, 9.0) as usize + 1
     } else {
@@ -124,7 +125,7 @@ fn digits(estimated: Estimated) -> String {
     }
 }
 
-/// A standard error to two digits.
+/// Formats a standard error with two digits.
 fn error(estimated: Estimated) -> String {
     two_digits(estimated.std_error)
 }

@@ -1,8 +1,10 @@
-//! From records and a nominal simulator to a stored answer: what the command line and the Rust interface share.
+//! Workflow from records and a nominal simulator to a stored answer, shared by the command line and the Rust
+//! interface.
 //!
-//! A record is [`load`](read::Loaded)ed by its [`Reading`] options, a nominal simulator is [`read`](nominal::read) or
-//! [`guess`]ed; together they are a [`Question`], whose [`Answer`] holds the diagnosis, the repaired simulator and the content
-//! of `diagnosis.json`. Nothing here parses a command line, prints, or writes a file.
+//! A record is [`load`](read::Loaded)ed with its [`Reading`] options; a nominal simulator is
+//! [`read`](nominal::read) or [`guess`]ed. Together they form a [`Question`], whose [`Answer`] holds the
+//! diagnosis, the repaired simulator and the content of `diagnosis.json`. This crate does not parse a command
+//! line, print, or write files.
 
 #![cfg_attr(
     test,

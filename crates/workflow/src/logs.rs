@@ -3,30 +3,31 @@
 use crate::error::WorkflowError;
 use std::path::{Path, PathBuf};
 
-/// Endings of the names of files that hold tables.
+/// Extensions of files that hold tables.
 const TABLES: &[&str] = &["csv", "tsv"];
-/// Endings of the names of files that may hold one.
+/// Extensions of text files that may hold a table.
 const TEXTS: &[&str] = &["txt", "log", "dat"];
 
-/// Whether a file is a log by its name: one that ends in `.csv`, `.tsv`, `.txt`, `.log` or `.dat`.
+/// Returns `true` if a file is a log by its name: one that ends in `.csv`, `.tsv`, `.txt`, `.log` or `.dat`.
 #[must_use]
 pub fn is_log(path: &Path) -> bool {
     path.is_file() && (ends_in(path, TABLES) || ends_in(path, TEXTS))
 }
 
-/// Whether a folder is that of a finished run or diagnosis.
+/// Returns `true` if a folder belongs to a finished run or diagnosis.
 #[must_use]
 pub fn is_run(folder: &Path) -> bool {
     ["result.json", "diagnosis.json"].iter().any(|file| folder.join(file).is_file())
 }
 
-/// The logs that a path stands for: a file for itself, a folder for those that lie in it, by their names.
+/// Returns the logs at a path: a file itself, or the logs in a folder, sorted by name.
 ///
-/// In a folder these are the files that end in `.csv` or `.tsv`; where there are none, those that end in `.txt`, `.log` or `.dat`.
-/// Hidden files and folders within it are left out.
+/// In a folder these are the files that end in `.csv` or `.tsv`; if there are none, those that end in `.txt`,
+/// `.log` or `.dat`. Hidden files and subfolders are skipped.
 ///
 /// # Errors
-/// [`WorkflowError::NoLogs`] for a folder without a log, and for the folder of a finished run, whose tables are no records.
+/// [`WorkflowError::NoLogs`] for a folder without a log, and for the folder of a finished run, whose tables
+/// are not records.
 pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
@@ -51,7 +52,7 @@ pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
     Ok(found)
 }
 
-/// What lies in a folder and is not hidden, by name.
+/// Returns the entries of a folder that are not hidden, sorted by name.
 fn entries(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -64,7 +65,7 @@ fn entries(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// The logs among the entries of a folder.
+/// Selects the logs among the entries of a folder.
 fn among(entries: &[PathBuf]) -> Vec<PathBuf> {
     let of = |endings: &[&str]| -> Vec<PathBuf> {
         entries.iter().filter(|path| path.is_file() && ends_in(path, endings)).cloned().collect()
@@ -73,7 +74,7 @@ fn among(entries: &[PathBuf]) -> Vec<PathBuf> {
     if tables.is_empty() { of(TEXTS) } else { tables }
 }
 
-/// What to name in place of a folder that holds no log.
+/// Suggests what to name in place of a folder that holds no log.
 fn elsewhere(folder: &str, entries: &[PathBuf]) -> String {
     if entries.iter().any(|path| path.join("nominal.toml").is_file()) {
         return format!(
@@ -92,7 +93,7 @@ fn elsewhere(folder: &str, entries: &[PathBuf]) -> String {
 }
 
 fn ends_in(path: &Path, endings: &[&str]) -> bool {
-    // A name without an ending is no log's.
+    // A file without an extension is not a log.
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     endings.contains(&ending.as_str())
 }

@@ -1,20 +1,21 @@
-//! Reading `nominal.toml`: what is believed of a system.
+//! Reading `nominal.toml`, the nominal simulator of a system.
 
 use crate::error::WorkflowError;
 use experiment::{StatedNominal, resolve_nominal};
 use settings::{Document, SettingsError};
 use std::path::Path;
 
-/// Digest of all that a nominal simulator states; comments and order are not among it.
+/// Computes the digest of everything that a nominal simulator states, excluding comments and order.
 #[must_use]
 pub fn digest(stated: &StatedNominal) -> String {
     runs::digest(export::nominal_text(&stated.simulator).as_bytes())
 }
 
-/// Reads a nominal simulator.
+/// Reads a nominal simulator from a file.
 ///
 /// # Errors
-/// [`WorkflowError`] with line and column; of a file that is something else, with the command that runs it.
+/// [`WorkflowError`] with line and column; for the configuration of an experiment, with the command that runs
+/// it.
 pub fn read(path: &Path) -> Result<StatedNominal, WorkflowError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| WorkflowError::Nominal {
@@ -27,7 +28,7 @@ pub fn read(path: &Path) -> Result<StatedNominal, WorkflowError> {
 /// Reads a nominal simulator from the text of a file; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read`].
+/// Same as [`read`].
 pub fn parse(file: &str, text: &str) -> Result<StatedNominal, WorkflowError> {
     let document = Document::parse(file, text)?;
     resolve_nominal(&document).map_err(|error| match (command_for(&document), error) {
@@ -40,7 +41,7 @@ pub fn parse(file: &str, text: &str) -> Result<StatedNominal, WorkflowError> {
     })
 }
 
-/// The command that runs a document which is the configuration of an experiment; `None` where it is none.
+/// Returns the command that runs a document if it is the configuration of an experiment; otherwise `None`.
 fn command_for(document: &Document) -> Option<&'static str> {
     let is_task = |name| document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some(name));
     if is_task("trials") {
@@ -55,7 +56,7 @@ fn command_for(document: &Document) -> Option<&'static str> {
     }
 }
 
-/// True where a document has a key or a section of this name.
+/// Returns `true` if a document has a key or a section with this name.
 fn has_section(document: &Document, name: &str) -> bool {
     let is_below =
         |key: &str| key.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));

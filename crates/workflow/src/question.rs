@@ -1,4 +1,4 @@
-//! Records of one system, what is believed of it, and the answer.
+//! Diagnosis question (records of one system and its nominal simulator) and its answer.
 
 use crate::error::WorkflowError;
 use crate::logs::logs;
@@ -13,31 +13,32 @@ use results::DiagnosisResult;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Records of one system and what is believed of it.
+/// Records of one system and its nominal simulator.
 pub struct Question {
-    /// The nominal simulator.
+    /// Nominal simulator.
     pub stated: StatedNominal,
-    /// The records, in the order given.
+    /// Records, in the order given.
     pub given: Vec<Given>,
-    /// The name of the nominal simulator's file, as results show it.
+    /// Name of the nominal simulator's file in results.
     pub nominal: String,
 }
 
-/// A diagnosis with all that it needs to be shown.
+/// Diagnosis with everything needed to show it.
 pub struct Answer {
-    /// The diagnosis.
+    /// Diagnosis.
     pub found: Diagnosis,
-    /// The simulator with what it lacked.
+    /// Repaired simulator: the recalibrated simulator with the fitted effects.
     pub repaired: Repaired,
-    /// The content of `diagnosis.json`.
+    /// Content of `diagnosis.json`.
     pub result: DiagnosisResult,
 }
 
 impl Question {
-    /// Puts records and a nominal simulator together.
+    /// Combines records and a nominal simulator.
     ///
     /// # Errors
-    /// [`WorkflowError::SameRecord`]: a record that is there twice would count as two that agree.
+    /// [`WorkflowError::SameRecord`] if a record is given twice, since it would count as two records that
+    /// agree.
     pub fn new(given: Vec<Given>, stated: StatedNominal, nominal: String) -> Result<Self, WorkflowError> {
         for (at, one) in given.iter().enumerate() {
             if let Some(again) = given.iter().skip(at + 1).find(|other| other.row.digest == one.row.digest) {
@@ -61,26 +62,27 @@ impl Question {
         Self::new(given, stated, nominal.display().to_string())
     }
 
-    /// Digests of the records, with spaces between.
+    /// Returns the digests of the records, separated by spaces.
     #[must_use]
     pub fn digests(&self) -> String {
         let digests: Vec<&str> = self.given.iter().map(|given| given.row.digest.as_str()).collect();
         digests.join(" ")
     }
 
-    /// Diagnoses; `seed` is what the answer states as the root of the draws of `settings`.
+    /// Computes the diagnosis. `seed` is the number that the answer states as the root of the random draws of
+    /// `settings`.
     ///
     /// # Errors
-    /// [`WorkflowError::Diagnosis`] with the record that the refusal is about.
+    /// [`WorkflowError::Diagnosis`] with the record at fault.
     pub fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, WorkflowError> {
         self.answer_watched(settings, seed, &|_| true)
     }
 
-    /// Diagnoses as [`Question::answer`] does; `goes_on` is called after each stage but the last with the stage's name, and ends
-    /// the diagnosis where it gives false.
+    /// Computes the diagnosis as [`Question::answer`] does. `goes_on` is called with the stage's name after
+    /// each stage but the last, and ends the diagnosis if it returns `false`.
     ///
     /// # Errors
-    /// As [`Question::answer`], and where the diagnosis was ended.
+    /// Same as [`Question::answer`], and if the diagnosis was ended.
     pub fn answer_watched(
         &self,
         settings: &Settings,
@@ -110,7 +112,7 @@ impl Question {
         Ok(Answer { found, repaired, result })
     }
 
-    /// A refusal with the file that it is about; where there are several records, the core counts them from 1.
+    /// Adds to an error the name of the record's file. The diagnosis counts records from 1.
     fn refused(&self, source: DiagnosisError) -> WorkflowError {
         use DiagnosisError as E;
         let record = match &source {
@@ -124,7 +126,7 @@ impl Question {
             _ => 1,
         };
         let file = record.checked_sub(1).and_then(|index| self.given.get(index));
-        // An error of a question without a record names no file.
+        // An error in a question without a record names no file.
         let file = file.map(|given| given.row.path.clone()).unwrap_or_default();
         WorkflowError::Diagnosis { file, source }
     }

@@ -1,4 +1,5 @@
-//! From files to what a diagnosis may see: no name and no path among it.
+//! Conversion of record files into observations, which are all that a diagnosis sees: no name and no path is
+//! among them.
 
 use crate::error::{WorkflowError, in_options};
 use diagnosis::Observations;
@@ -15,52 +16,53 @@ use std::path::Path;
 pub struct Reading {
     /// Format, columns, units, quantity.
     pub options: ReadOptions,
-    /// The clock to believe.
+    /// Clock to believe.
     pub clock: ClockChoice,
-    /// Origin of the numbers, where the file does not state it.
+    /// Origin of the numbers, if the file does not state it.
     pub origin: Option<Origin>,
-    /// Takes the means of the observed column and of the input away: for channels with an arbitrary zero.
+    /// `true` to subtract the means of the observed column and of the input, for channels with an arbitrary
+    /// zero.
     pub remove_mean: bool,
 }
 
 impl Reading {
-    /// The same with the observed column named.
+    /// Sets the name of the observed column.
     #[must_use]
     pub fn value(mut self, column: &str) -> Self {
         self.options.columns.value = Some(column.to_owned());
         self
     }
 
-    /// The same with the unit of the observed column.
+    /// Sets the unit of the observed column.
     #[must_use]
     pub fn unit(mut self, unit: Unit) -> Self {
         self.options.columns.unit = Some(unit);
         self
     }
 
-    /// The same with the time column named.
+    /// Sets the name of the time column.
     #[must_use]
     pub fn time(mut self, column: &str) -> Self {
         self.options.columns.time = Some(column.to_owned());
         self
     }
 
-    /// The same with the input's column named.
+    /// Sets the name of the input's column.
     #[must_use]
     pub fn input(mut self, column: &str) -> Self {
         self.options.columns.input = Some(column.to_owned());
         self
     }
 
-    /// The same with the clock to believe.
+    /// Sets the clock to believe.
     #[must_use]
     pub fn clock(mut self, clock: ClockChoice) -> Self {
         self.clock = clock;
         self
     }
 
-    /// The same options for records of a system: columns and units as its coordinate asks for, and an input where it has
-    /// a gain for one.
+    /// Adapts the options to records of a system: columns and units follow from its coordinate, and an input
+    /// is expected if the system has an input gain.
     #[must_use]
     pub fn for_nominal(mut self, stated: &StatedNominal) -> Self {
         self.options.coordinate = Some(match stated.nominal.coordinate() {
@@ -72,38 +74,38 @@ impl Reading {
     }
 }
 
-/// A record with its source and the clock to believe.
+/// Record with its source and the clock to believe.
 #[derive(Debug, Clone)]
 pub struct Loaded {
-    /// The record, in SI units.
+    /// Record, in SI units.
     pub record: Record,
-    /// Where it came from, for people.
+    /// Source of the record, for display only.
     pub source: Source,
-    /// The clock to believe.
+    /// Clock to believe.
     pub clock: ClockChoice,
-    /// Origin of the numbers, where the file does not state it.
+    /// Origin of the numbers, if the file does not state it.
     pub origin: Option<Origin>,
-    /// The columns that there are, as messages list them.
+    /// Columns of the file, as messages list them.
     pub columns: String,
 }
 
-/// A record as the diagnosis sees it, and what people are told of it.
+/// Record as the diagnosis sees it, with the details that are shown to users.
 #[derive(Debug, Clone)]
 pub struct Given {
-    /// All that the diagnosis sees.
+    /// Observations, which are all that the diagnosis sees.
     pub observations: Observations,
-    /// The record's line in results.
+    /// Row of the record in results.
     pub row: RecordRow,
     /// Observed quantity.
     pub quantity: Quantity,
-    /// True where there is an input.
+    /// `true` if there is an input.
     pub driven: bool,
     /// Sampling rate of the believed clock, in hertz.
     pub rate_hz: f64,
 }
 
 impl Loaded {
-    /// Reads a record by the options and, where these are silent, by its header.
+    /// Reads a record according to the options; the header decides what the options leave open.
     ///
     /// # Errors
     /// [`WorkflowError::Record`] with the line, what was expected and the option to set.
@@ -118,10 +120,10 @@ impl Loaded {
         Self::parse(&name, &bytes, reading)
     }
 
-    /// Reads a record from the bytes of a file; `name` is what messages call it.
+    /// Reads a record from the bytes of a file; `name` is its name in messages.
     ///
     /// # Errors
-    /// As [`Loaded::read`].
+    /// Same as [`Loaded::read`].
     pub fn parse(name: &str, bytes: &[u8], reading: &Reading) -> Result<Self, WorkflowError> {
         let (record, source) =
             record::read_text(name, bytes, &reading.options).map_err(WorkflowError::Record)?;
@@ -133,10 +135,10 @@ impl Loaded {
         Ok(Self { record, source, clock: reading.clock, origin: reading.origin, columns: header(bytes) })
     }
 
-    /// The clock that is believed.
+    /// Returns the believed clock.
     ///
     /// # Errors
-    /// [`WorkflowError::Record`] where the stamps are no clock.
+    /// [`WorkflowError::Record`] if the time stamps do not form a clock.
     pub fn believed(&self) -> Result<Clock, WorkflowError> {
         self.clock_of(self.clock)
     }
@@ -146,10 +148,11 @@ impl Loaded {
             .map_err(|fault| WorkflowError::Record(fault.in_file(&self.source.path)))
     }
 
-    /// The record as a diagnosis of a system sees it.
+    /// Returns the record as a diagnosis of a system sees it.
     ///
     /// # Errors
-    /// [`WorkflowError::OtherUnit`] and [`WorkflowError::MissingInput`] for a record that cannot be of that system.
+    /// [`WorkflowError::OtherUnit`] and [`WorkflowError::MissingInput`] for a record that cannot belong to
+    /// that system.
     pub fn given(&self, stated: &StatedNominal) -> Result<Given, WorkflowError> {
         let record = &self.record;
         check_unit(&self.source.path, record, stated.nominal.coordinate())?;
@@ -168,7 +171,7 @@ impl Loaded {
                 digest: summary.digest,
                 origin: summary.origin,
                 samples: summary.samples,
-                // A record of no sample lasts no time.
+                // A record without samples has a duration of zero.
                 duration_s: first.zip(last).map_or(0.0, |(first, last)| last - first),
                 clock: summary.clock,
                 clock_reason: summary.clock_reason,
@@ -187,7 +190,7 @@ impl Loaded {
     }
 }
 
-/// The first line that is neither empty nor a comment.
+/// Returns the first line that is neither empty nor a comment.
 fn header(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
@@ -195,7 +198,7 @@ fn header(bytes: &[u8]) -> String {
     lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default().to_owned()
 }
 
-/// The simulator's name for what moves in a record.
+/// Converts a record's coordinate into the simulator's.
 #[must_use]
 pub fn coordinate_of(coordinate: record::Coordinate) -> Coordinate {
     match coordinate {
@@ -204,7 +207,7 @@ pub fn coordinate_of(coordinate: record::Coordinate) -> Coordinate {
     }
 }
 
-/// Symbol of the unit that records of a coordinate are in.
+/// Returns the symbol of the unit that records of a coordinate have.
 fn usual_unit(coordinate: Coordinate, quantity: Quantity) -> &'static str {
     match (coordinate, quantity) {
         (Coordinate::Angle, Quantity::Position) => "rad",
@@ -216,8 +219,8 @@ fn usual_unit(coordinate: Coordinate, quantity: Quantity) -> &'static str {
     }
 }
 
-/// A record whose unit cannot be that of the nominal coordinate is of another system, or mislabeled. A voltage stands
-/// for a displacement, whatever its derivative.
+/// Checks that a record's unit fits the nominal coordinate; otherwise the record belongs to another system or
+/// is mislabeled. A voltage is accepted for a displacement and its derivatives.
 fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(), WorkflowError> {
     let expected = usual_unit(coordinate, record.quantity());
     let voltage = record.unit() == Unit::Volt.si() && coordinate == Coordinate::Displacement;
@@ -227,26 +230,26 @@ fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(),
     Err(WorkflowError::OtherUnit { file: file.to_owned(), found: record.unit(), expected })
 }
 
-/// The record with the means of the observed column and of the input taken away.
+/// Subtracts the means of the observed column and of the input.
 ///
 /// # Errors
-/// As [`Record::new`], of numbers so large that their mean is not finite.
+/// Same as [`Record::new`], for numbers so large that their mean is not finite.
 pub fn centered(record: &Record) -> Result<Record, Fault> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let value = mean(record.values());
-    // Without an input nothing is taken from it.
+    // Without an input, zero is subtracted.
     let input = record.input().map_or(0.0, mean);
     record.mapped(|own| own - value, |own| own - input)
 }
 
-/// Part of half their range that values have to pass, to either side, for a half swing to count.
+/// Share of half their range that values have to exceed, on either side, for a half swing to count.
 const HALF_SWING: f64 = 0.1;
 
-/// A sentence where a velocity or an acceleration has a mean that no free swing has, as of a sensor's bias or of gravity; none
-/// with an input, which may push to one side.
+/// Returns a warning if a velocity or an acceleration has a mean that no free swing has, as from a sensor's
+/// bias or gravity. Returns `None` for records with an input, which may push to one side.
 ///
-/// The mean of a rate is what the swing changes by over the time: 2A/T at most. Of n half swings of amplitude A it is at most 2/(πn)
-/// of the rate's own amplitude.
+/// The mean of a rate is the change of the swing over the time T, divided by T: at most 2A/T. For n half
+/// swings of amplitude A it is at most 2/(πn) of the rate's own amplitude.
 #[must_use]
 pub fn bias(record: &Record) -> Option<String> {
     if record.quantity() == Quantity::Position || record.input().is_some() {
@@ -273,7 +276,7 @@ pub fn bias(record: &Record) -> Option<String> {
     })
 }
 
-/// The simulator's name for what the sensor observes.
+/// Converts an observed quantity into the simulator's.
 pub(crate) fn observed(quantity: Quantity) -> Observed {
     match quantity {
         Quantity::Position => Observed::Position,

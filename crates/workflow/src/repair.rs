@@ -1,4 +1,4 @@
-//! The repaired simulator: the recalibrated nominal one with the effects that were fitted.
+//! Repaired simulator: the recalibrated simulator with the fitted effects.
 
 use crate::read::{Given, observed};
 use crate::result::title;
@@ -6,12 +6,12 @@ use diagnosis::{Diagnosis, has_fitted_hidden_start, rounded};
 use dynamics::{Active, DynamicsError, Effect, Start, System, Units};
 use export::Repaired;
 
-/// Relative errors of a noise from some thousand samples, and of a clock's rate and span at best.
+/// Relative errors of a noise level from some thousand samples, and, at best, of a clock's rate and span.
 const OF_NOISE: f64 = 0.01;
 const OF_TIME: f64 = 1e-6;
 
-/// Puts it together. An effect without coefficients of its own (stamps in bursts, say) cannot be part of it and is
-/// listed; so are numbers that the data do not determine.
+/// Builds the repaired simulator. An effect without coefficients of its own (stamps in bursts, say) cannot be
+/// part of it and is listed instead; so are numbers that the data do not determine.
 pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Result<Repaired, DynamicsError> {
     let own = &found.repaired;
     let (effects, chain): (Vec<Active>, Vec<Active>) =
@@ -42,14 +42,14 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
             System::new(own.nominal, Vec::new())?
         }
     };
-    // Rounding is a part of the floor, and the repaired chain may do it by itself.
+    // Rounding is part of the noise floor; it is subtracted because the repaired chain may round by itself.
     let rounding = chain.iter().filter_map(|own: &Active| own.value("step")).map(|step| step * step / 12.0);
     let noise = (found.gap.noise_floor.value.powi(2) - rounding.sum::<f64>()).max(0.0).sqrt();
     let first = given.first();
     let (rate_hz, seconds) = first.map_or((1.0, 1.0), |given| (given.rate_hz, given.row.duration_s));
-    // What the sensor's noise leaves of a position, and of a velocity over a swing or the record.
+    // Uncertainty that the sensor's noise leaves in a position, and in a velocity over a swing or the record.
     let per_second = system.nominal().angular_frequency().max(1.0 / seconds);
-    // A diagnosis of no sample was refused before.
+    // A diagnosis without samples was refused before.
     let at_start = |values: &[f64], error| rounded(values.first().copied().unwrap_or_default(), error);
     Ok(Repaired {
         system,
@@ -61,7 +61,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
             position: at_start(&found.series.position, noise),
             velocity: at_start(&found.series.velocity, noise * per_second),
         },
-        // Without a record nothing says what is observed: an angle, as everywhere.
+        // Without a record the observed quantity is unknown; an angle is assumed, as elsewhere.
         observed: observed(first.map(|given| given.quantity).unwrap_or_default()),
         noise: rounded(noise, OF_NOISE * noise),
         rate_hz: rounded(rate_hz, OF_TIME * rate_hz),

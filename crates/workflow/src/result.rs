@@ -1,4 +1,4 @@
-//! A diagnosis in the form that files and scripts get.
+//! Stored form of a diagnosis, for files and scripts.
 
 use crate::read::Given;
 use diagnosis::{
@@ -14,10 +14,10 @@ use results::{
     ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 
-/// The records, the nominal simulator and the repaired one, beside the diagnosis itself.
+/// Records, nominal simulator and repaired simulator that belong to a diagnosis.
 pub(crate) struct Beside<'a> {
     pub(crate) given: &'a [Given],
-    /// The file of the nominal simulator.
+    /// File of the nominal simulator.
     pub(crate) nominal: &'a str,
     pub(crate) nominal_digest: &'a str,
     pub(crate) seed: u64,
@@ -25,10 +25,10 @@ pub(crate) struct Beside<'a> {
     pub(crate) repaired: &'a Repaired,
 }
 
-/// The content of `diagnosis.json`.
+/// Builds the content of `diagnosis.json`.
 pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult {
     let first = beside.given.first();
-    // Without a record nothing says what is observed: an angle, as everywhere.
+    // Without a record the observed quantity is unknown; an angle is assumed, as elsewhere.
     let quantity = first.map(|given| given.quantity).unwrap_or_default();
     let units = beside.repaired.units;
     let mut result = DiagnosisResult {
@@ -37,7 +37,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         effects: effects(found),
         gap: gap(found),
         place: place(found),
-        // No record, no reason.
+        // Without a record there is no reason for a clock.
         measuring_chain: chain(found, first.map_or("", |given| &given.row.clock_reason)),
         calibration: calibration(found, units),
         next_experiment: next_experiment(found),
@@ -76,7 +76,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     result
 }
 
-/// The verdict; its sentence follows from the whole result.
+/// Builds the verdict; its sentence is added later, since it follows from the whole result.
 fn verdict(found: &Diagnosis) -> DiagnosisVerdict {
     let own = &found.verdict;
     DiagnosisVerdict {
@@ -124,7 +124,7 @@ fn sets(found: &Diagnosis) -> Vec<SetRow> {
     found.sets.iter().map(row).collect()
 }
 
-/// Where the gap lies.
+/// Builds the maps that locate the gap.
 fn place(found: &Diagnosis) -> GapMaps {
     GapMaps {
         budget: BudgetShares {
@@ -145,7 +145,7 @@ fn owned(ids: &[&'static str]) -> Vec<String> {
     ids.iter().map(|id| (*id).to_owned()).collect()
 }
 
-/// A class of effects as it is stored.
+/// Converts a class of effects into its stored row.
 fn class_row(class: &EffectClass) -> ClassRow {
     ClassRow {
         id: class.id.to_owned(),
@@ -163,7 +163,7 @@ fn class_row(class: &EffectClass) -> ClassRow {
     }
 }
 
-/// The name of an id in words.
+/// Returns the name of an id in words.
 #[must_use]
 pub fn title(id: &str) -> String {
     match Status::of_row(id) {
@@ -304,7 +304,7 @@ fn next_experiment(found: &Diagnosis) -> NextExperiment {
     }
 }
 
-/// Reason why no experiment is proposed.
+/// Explains why no experiment is proposed.
 fn no_experiment(found: &Diagnosis) -> &'static str {
     match found.verdict.status {
         Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
@@ -335,7 +335,8 @@ fn backbones(series: &Series) -> Backbone {
     }
 }
 
-/// Restoring force that the recalibrated law lacks, by cells of the phase plane; a coefficient that these data cannot tell stays as it was.
+/// Computes the restoring force that the recalibrated law lacks, by cells of the phase plane. A coefficient
+/// that the data do not determine keeps its nominal value.
 fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCell> {
     let value = |name: &str| {
         let row = found.calibration.iter().find(|row| row.name == name)?;
@@ -350,7 +351,7 @@ fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCe
             input_gain: 1.0,
         })
     };
-    // What a law without one of its coefficients lacks cannot be told.
+    // If a coefficient of the law is missing, the missing force cannot be computed.
     let Some(coefficients) = recalibrated() else { return Vec::new() };
     surface(&found.series, quantity, &coefficients)
         .into_iter()
@@ -363,7 +364,7 @@ fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCe
         .collect()
 }
 
-/// The rows of `series.csv`.
+/// Returns the rows of `series.csv`.
 #[must_use]
 pub fn series_rows(series: &Series) -> Vec<SeriesRow> {
     let mut rows = Vec::with_capacity(series.time_s.len());
@@ -391,7 +392,7 @@ pub fn series_rows(series: &Series) -> Vec<SeriesRow> {
 
 #[cfg(test)]
 mod tests {
-    /// The answer's readers and the diagnosis draw the line at the same distance.
+    /// Results and diagnosis use the same distance to tell explanations apart.
     #[test]
     fn one_distance_tells_explanations_apart() {
         assert_eq!(results::DISTINCT_DISTANCE, diagnosis::DISTINCT_DISTANCE);

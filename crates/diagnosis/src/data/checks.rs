@@ -1,4 +1,4 @@
-//! What a record has to be before it is cut into segments.
+//! Checks that a record has to pass before it is cut into segments.
 
 use crate::data::observations::Observations;
 use crate::data::period::swing;
@@ -8,15 +8,17 @@ use dynamics::{Coordinate, NominalSimulator};
 use record::Quantity;
 use std::f64::consts::TAU;
 
-/// Fewest samples and cycles of a record.
+/// Minimum number of samples, and of cycles, in a record.
 const FEWEST_SAMPLES: usize = 50;
 const FEWEST_CYCLES: f64 = 3.0;
 
-/// Factor between measured and nominal period from which on they are not the same system: a spring that misses a weight
-/// swings more than twice as slowly, and a unit that is wrong makes a factor of √9.81 at least.
+/// Factor between the measured and the nominal period from which on they belong to different systems. A
+/// spring that misses a weight swings more than twice as slowly, and a wrong unit makes a factor of at least
+/// √9.81.
 const ANOTHER_SYSTEM: f64 = 3.0;
 
-/// Refuses a record that says nothing; gives its period where it swings freely. `kept` tells which samples are no outliers.
+/// Checks that a record can be diagnosed and returns its period in seconds. `None` for a driven record, and
+/// for a free swing without a period to compare. `kept` is `true` for each sample that is not an outlier.
 pub(crate) fn check(
     number: usize,
     (record, kept): (&Observations, &[bool]),
@@ -34,7 +36,7 @@ pub(crate) fn check(
         });
     }
     let span = span(&record.values);
-    // A resolution that nobody states rounds nothing.
+    // A sensor without a stated resolution counts as one that does not round.
     let resolution = record.resolution.or(simulator.nominal().sensor_resolution()).unwrap_or(0.0);
     if span <= 3.0 * resolution || span <= 0.0 {
         return Err(DiagnosisError::NoMotion { record: number, span, resolution, unit: record.unit });
@@ -42,11 +44,12 @@ pub(crate) fn check(
     if record.input.is_some() { Ok(None) } else { own_period(number, (record, kept), simulator) }
 }
 
-/// The period of a free swing, where it has one to compare with the simulator's.
+/// Returns the period of a free swing in seconds; `None` if it has none to compare with the simulator's.
 ///
 /// # Errors
-/// Where the simulator has no spring and nothing acts, where less than two periods are seen, where the period is another
-/// system's, and where angles are larger than any in radians.
+/// Returns an error if the simulator has no spring and the record no input, if fewer than [`FEWEST_CYCLES`]
+/// cycles are seen, if the period is that of another system ([`ANOTHER_SYSTEM`]), or if an angle is larger
+/// than a full turn, so that its unit is hardly the radian.
 fn own_period(
     number: usize,
     (record, kept): (&Observations, &[bool]),
@@ -63,7 +66,7 @@ fn own_period(
     let nominal_s = TAU / omega;
     let (times, values) = (only(&record.times_s, kept), only(&record.values, kept));
     let swing = swing(&times, &values);
-    // What does not swing has no cycles.
+    // A record without a swing has no cycles.
     let cycles = swing.map_or(0.0, |swing| swing.cycles);
     let spans = record.duration_s() / nominal_s;
     if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {
@@ -80,7 +83,7 @@ fn own_period(
         return Ok(None);
     };
     let ratio = |period_s: f64| (period_s / nominal_s).max(nominal_s / period_s);
-    // Refused is what the spectrum does not allow either.
+    // A record is refused only if the strongest period of its spectrum is off as well.
     let of_spectrum = || strongest_period(&times, &values, crossed_s.min(nominal_s)).unwrap_or(crossed_s);
     let measured_s = if ratio(crossed_s) < ANOTHER_SYSTEM { crossed_s } else { of_spectrum() };
     let ratio = ratio(measured_s);
@@ -95,13 +98,13 @@ fn own_period(
     Ok(Some(measured_s))
 }
 
-/// The highest value less the lowest.
+/// Returns the difference between the highest and the lowest value.
 pub(crate) fn span(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     highest - values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The values that are kept.
+/// Returns the values that `kept` marks.
 pub(crate) fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {
     values.iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
 }

@@ -1,21 +1,23 @@
-//! Fewer knots of an input that is sampled faster than the motion feels.
+//! Thinning of the knots of an input that is sampled faster than the motion responds.
 //!
-//! A run takes at least a step from knot to knot. A drive's command comes at a thousand a second and its motion answers
-//! below ten: straight lines over several samples move it the same way. How many samples one knot may stand for is asked
-//! of a fit: as many as change its prediction by no more than a small part of what it leaves.
+//! An integration takes at least one step from knot to knot. A drive's command comes at a thousand samples a
+//! second and its motion responds below 10 Hz: straight lines over several samples move it the same way. A
+//! fit decides how many samples one knot may stand for: as many as change its prediction by no more than a
+//! small part of its residual.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::residuals;
 
-/// Samples that one knot stands for at most.
+/// Maximum number of samples that one knot stands for.
 const MOST: usize = 32;
 
-/// Part of a fit's residual (RMS) by which its prediction may change.
+/// Largest change of a fit's prediction, relative to the fit's residual (both RMS).
 const PART: f64 = 0.01;
 
 impl Data {
-    /// How many samples of the inputs one knot may stand for without a prediction noticing.
+    /// Returns the number of input samples that one knot may stand for without a noticeable change of the
+    /// prediction: a power of two, 1 where there is nothing to spare.
     pub(crate) fn spare_knots(&self, at: &Fit) -> usize {
         let Some(change) = self.change(at) else { return 1 };
         let counts = std::iter::successors(Some(2), |count| Some(2 * count));
@@ -23,14 +25,15 @@ impl Data {
         close.last().unwrap_or(1)
     }
 
-    /// Whether a set that was fitted with one knot for so many samples is bent to these: with all of them its prediction changes by
-    /// more than what it leaves.
+    /// Returns `true` if a fit made with one knot for `count` samples does not hold with all knots: they
+    /// change its prediction by more than its residual (RMS), or this change cannot be computed.
     pub(crate) fn spoils(&self, count: usize, at: &Fit) -> bool {
         self.change(at).is_none_or(|change| change(count) > 1.0)
     }
 
-    /// Change of a prediction, by how many samples one knot stands for, relative to what the fit left (RMS); none where there is
-    /// nothing to spare.
+    /// Returns a function that maps the number of samples per knot to the change of the prediction, relative
+    /// to the residual of the fit (both RMS); `None` if no record is driven or the fit's residuals cannot be
+    /// computed.
     fn change(&self, at: &Fit) -> Option<impl Fn(usize) -> f64> {
         let exact = self.driven().then(|| residuals(self, at).ok())??;
         let left = at.squares / at.samples().max(1) as f64 * self.samples() as f64;
@@ -43,7 +46,7 @@ impl Data {
         })
     }
 
-    /// The same with one knot of the inputs for every so many samples.
+    /// Returns the same data with one knot of the inputs for every `count` samples.
     pub(crate) fn with_fewer_knots(&self, count: usize) -> Self {
         let inputs = self.inputs.iter().map(|input| input.as_ref().map(|own| own.thinned(count)));
         Self { inputs: inputs.collect(), ..self.clone() }
@@ -62,7 +65,8 @@ mod tests {
     use record::{Clock, ClockChoice, Quantity, Record};
     use seed::Seed;
 
-    /// A swing at 0.5 Hz that a sine of 0.2 Hz drives, both 500 times a second, or one that a fast input drives too.
+    /// A swing at 0.5 Hz driven by a sine of 0.2 Hz, and by a fast sine of amplitude `fast`; 500 samples a
+    /// second.
     fn observed(fast: f64) -> Observations {
         let nominal = Nominal::new(1.0, 0.4, 10.0, 0.0).unwrap();
         let times: Vec<f64> = (0..10_000).map(|i| f64::from(i) * 0.002).collect();

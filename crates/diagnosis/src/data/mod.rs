@@ -1,4 +1,4 @@
-//! Records as the fits see them: observations, segments and the scales they set.
+//! Records as the fits use them: observations, segments and the scales derived from them.
 
 pub(crate) mod checks;
 pub(crate) mod knots;

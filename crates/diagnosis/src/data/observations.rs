@@ -1,42 +1,45 @@
-//! What a diagnosis sees of a record.
+//! Observations of one record, which are all that a diagnosis reads of it.
 
 use record::{Clock, ClockKind, Quantity, Record, StampStatistics};
 
-/// The observations of one record: times by a believed clock, values, input. Neither a path nor an origin.
+/// Observations of one record: times by the chosen clock, values and input. They hold neither a path nor an
+/// origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observations {
-    /// Time of each sample in seconds since the first, by the believed clock.
+    /// Time of each sample in seconds since the first, by the chosen clock.
     pub(crate) times_s: Vec<f64>,
     pub(crate) values: Vec<f64>,
     pub(crate) input: Option<Vec<f64>>,
-    /// Times and inputs of rows between the samples that hold an input and no value.
+    /// Times in seconds and inputs of the rows between the samples that hold an input but no value.
     pub(crate) input_rows: Vec<(f64, f64)>,
     pub(crate) quantity: Quantity,
     pub(crate) unit: &'static str,
-    /// Stamps as written, in seconds since the first.
+    /// Time stamps as written, in seconds since the first.
     pub(crate) stamps_s: Vec<f64>,
     pub(crate) clock: ClockKind,
     pub(crate) sample_rate_hz: f64,
-    /// Standard error of the rate that the clock was given, relative to it; 0 where the stamps are believed.
+    /// Relative standard error of the clock's sampling rate; 0 if the clock uses the stamps as they are.
     pub(crate) rate_error: f64,
     pub(crate) stamps: StampStatistics,
-    /// The sensor's step, where the values lie on a lattice.
+    /// Step of the sensor, if the values lie on a lattice.
     pub(crate) resolution: Option<f64>,
-    /// Samples that come after rows without a value.
+    /// Indices of the samples that come after a gap in the rows.
     pub(crate) after_gaps: Vec<usize>,
 }
 
-/// Usual steps in rows that a gap is longer than: a row or two leave the samples beside them near enough.
+/// Number of usual steps in rows that a gap exceeds. After one or two missing rows the neighboring samples
+/// are close enough.
 const STEPS: usize = 3;
 
-/// Samples that come after a gap in the rows; where an input acts, after one in which it is not known.
+/// Returns the indices of the samples that come after a gap in the rows. Rows that hold only an input fill a
+/// gap.
 fn after_gaps(record: &Record) -> Vec<usize> {
-    // A record that was not read from a file has no rows, and no gaps in them.
+    // A record that was not read from a file has no row numbers, and so no gaps.
     let rows = record.rows().unwrap_or_default();
     let steps: Vec<usize> = rows.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
     let mut ordered = steps.clone();
     ordered.sort_unstable();
-    // Without rows there is no step.
+    // A single row has no step to its neighbor.
     let usual = ordered.get(ordered.len() / 2).copied().unwrap_or(1);
     let mut known = [rows, &record.input_rows().iter().map(|own| own.row).collect::<Vec<_>>()].concat();
     known.sort_unstable();
@@ -48,12 +51,12 @@ fn after_gaps(record: &Record) -> Vec<usize> {
 }
 
 impl Observations {
-    /// Takes from a record what a diagnosis may see, on the clock that is believed.
+    /// Creates the observations of a record, with times by the given clock.
     #[must_use]
     pub fn new(record: &Record, clock: &Clock) -> Self {
-        // A clock has a time for every sample, and a record has samples.
+        // A clock has a time for every sample, and a record has at least one sample.
         let first = clock.times_s.first().copied().unwrap_or_default();
-        // As many stamps as times.
+        // There are as many stamps as times.
         let stamp = record.stamps_s().first().copied().unwrap_or_default();
         Self {
             times_s: clock.times_s.iter().map(|time| time - first).collect(),
@@ -85,32 +88,32 @@ impl Observations {
         self.values.len()
     }
 
-    /// Whether there are no samples.
+    /// Returns `true` if there are no samples.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// Time of each sample in seconds since the first, by the believed clock.
+    /// Returns the time of each sample in seconds since the first, by the chosen clock.
     #[must_use]
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    /// What was observed, in SI units.
+    /// Returns the observed values in SI units.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The input, where there is one.
+    /// Returns the input at each sample; `None` if the record has none.
     #[must_use]
     pub fn input(&self) -> Option<&[f64]> {
         self.input.as_deref()
     }
 
     pub(crate) fn duration_s(&self) -> f64 {
-        // Without samples it lasts no time.
+        // An empty record lasts 0 s.
         self.times_s.last().copied().unwrap_or_default()
     }
 }

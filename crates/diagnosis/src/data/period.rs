@@ -1,40 +1,42 @@
-//! The period of a swing, from the values alone.
+//! Period of a swing, computed from the values alone.
 
 use crate::noise::statistics::{mean, median};
 
-/// A swing as the values show it.
+/// Swing found in the values of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Swing {
-    /// Median time between every second crossing of the middle, in seconds.
+    /// Median time from a crossing of the middle to the next but one, in seconds.
     pub(crate) period_s: f64,
     /// Number of full cycles seen.
     pub(crate) cycles: f64,
-    /// When it first crosses the middle, in seconds.
+    /// Time of the first crossing of the middle, in seconds.
     pub(crate) first_s: f64,
 }
 
 /// Part of the largest deflection below which a crossing may be noise.
 const THRESHOLD: f64 = 0.04;
 
-/// The same where crossings come at no regular intervals.
+/// Thresholds that are tried if the crossings come at irregular intervals.
 const HIGHER: [f64; 4] = [0.04, 0.1, 0.25, 0.5];
 
-/// Median distance of half periods from their median, relative to it, up to which they are regular.
+/// Median distance of the periods from their median, relative to it, up to which they count as regular.
 const REGULAR: f64 = 0.2;
 
-/// Crossings that regularity is told from, at least.
+/// Minimum number of periods needed to judge their regularity.
 const FEWEST: usize = 5;
 
-/// Times of the crossings of the middle.
+/// Times at which the values cross the middle, in seconds.
 struct Crossings(Vec<f64>);
 
-/// Finds a swing about the mean by its crossings; `None` where fewer than two are seen.
+/// Finds a swing about the mean by its crossings; `None` if fewer than two are seen.
 ///
-/// A crossing counts once the values have gone from beyond the threshold on one side to beyond it on the other,
-/// so that noise on a slow crossing is no swing. Its time is interpolated.
+/// A crossing counts once the values have gone from beyond the threshold on one side to beyond it on the
+/// other, so that noise on a slow crossing does not count as a swing. The time of the crossing is
+/// interpolated.
 ///
-/// Crossings that come at no regular intervals are noise, wrong readings or steps of the sensor. Then medians of three
-/// neighbors are looked at, with higher thresholds too, and the most regular crossings are believed.
+/// Crossings at irregular intervals come from noise, wrong readings or steps of the sensor. In that case the
+/// values are replaced by medians of three neighbors, higher thresholds are tried too, and the most regular
+/// crossings are used.
 pub(crate) fn swing(times: &[f64], values: &[f64]) -> Option<Swing> {
     let first = Crossings::of(times, values, THRESHOLD);
     if first.irregularity().is_some_and(|own| own <= REGULAR) {
@@ -71,12 +73,13 @@ impl Crossings {
         Self(crossings)
     }
 
-    /// Times between crossings so many apart.
+    /// Returns the times between crossings that are `apart` crossings apart, in seconds.
     fn intervals(&self, apart: usize) -> Vec<f64> {
         self.0.iter().zip(self.0.iter().skip(apart)).map(|(one, next)| next - one).collect()
     }
 
-    /// How far full periods lie from their median, relative to it. None of fewer than [`FEWEST`].
+    /// Returns the median distance of the periods from their median, relative to it; `None` for fewer than
+    /// [`FEWEST`] periods.
     fn irregularity(&self) -> Option<f64> {
         let periods = self.intervals(2);
         if periods.len() < FEWEST {
@@ -91,7 +94,7 @@ impl Crossings {
         let halves = self.intervals(1);
         let periods = self.intervals(2);
         self.0.first().filter(|_| !halves.is_empty()).map(|&first_s| Swing {
-            // A middle that is off makes every second half period longer.
+            // If the middle is off, every second half period is longer; full periods are not affected.
             period_s: if periods.is_empty() { 2.0 * median(&halves) } else { median(&periods) },
             cycles: 0.5 * (halves.len() + 1) as f64,
             first_s,
@@ -99,7 +102,7 @@ impl Crossings {
     }
 }
 
-/// Each value replaced by the median of itself and its neighbors: a reading that is wrong by itself is gone.
+/// Replaces each value by the median of itself and its two neighbors, which removes single wrong readings.
 fn medians_of_three(values: &[f64]) -> Vec<f64> {
     let at = |index: usize| values.get(index).copied();
     let of = |(index, own): (usize, &f64)| {
@@ -116,7 +119,7 @@ mod tests {
 
     const OMEGA: f64 = 22.0;
 
-    /// 10 s of a decay with an offset, 260 samples a second, and a little noise.
+    /// Decay of 10 s with an offset and a little noise, 260 samples a second.
     fn decay() -> (Vec<f64>, Vec<f64>) {
         let times: Vec<f64> = (0..2600).map(|i| i as f64 / 260.0).collect();
         let noise = |i: usize| 1e-3 * ((i * 7919 % 13) as f64 - 6.0) / 6.0;
@@ -138,7 +141,7 @@ mod tests {
         assert!((found.cycles - 35.0).abs() <= 1.0, "{found:?}");
     }
 
-    /// Every tenth reading is wrong, to either side.
+    /// Every tenth reading is wrong, to alternating sides.
     #[test]
     fn wrong_readings_make_no_swing() {
         let (times, mut values) = decay();
@@ -148,8 +151,8 @@ mod tests {
         assert_period(&times, &values, 0.02, "wrong readings");
     }
 
-    /// Noise of a seventh of the first amplitude, a sensor of seven steps a swing with such a noise, and one that shows
-    /// nothing of the middle half.
+    /// Noise of a seventh of the first amplitude; a sensor of seven steps a swing with such noise; and a
+    /// sensor that does not show the middle half of the swing.
     #[test]
     fn noise_steps_and_dead_zones() {
         let (times, values) = decay();

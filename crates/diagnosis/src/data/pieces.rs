@@ -1,18 +1,19 @@
-//! Samples of a record on their way to segments: cut by length, and where an input is not known.
+//! Pieces of a record on the way to segments: cut into equal lengths, and wherever the input is unknown.
 
 use crate::data::observations::Observations;
 
-/// Consecutive samples.
+/// Consecutive samples of a record.
 pub(crate) struct Piece {
-    /// Which of the record's equal lengths they lie in.
+    /// Index of the record's equal length that holds them.
     pub(crate) at: usize,
-    /// Which of the stretches between gaps of the input they lie in.
+    /// Index of the stretch between gaps of the input that holds them.
     pub(crate) stretch: usize,
     pub(crate) times: Vec<f64>,
     pub(crate) values: Vec<f64>,
 }
 
-/// Cuts samples into so many equal lengths, and where the input has a gap: drawn through a gap, it would push the body there.
+/// Cuts samples into `count` equal lengths and at each gap of the input. An input interpolated across a gap
+/// would push the body there.
 pub(crate) fn pieces(
     record: &Observations,
     (count, length): (usize, f64),

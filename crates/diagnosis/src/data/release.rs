@@ -1,29 +1,30 @@
-//! Where a record begins to swing freely.
+//! Detection of the time at which a record begins to swing freely.
 //!
-//! Whoever logs a release starts the log first: a hand holds the body, or draws it back, until it lets go. A free swing passes
-//! its middle twice in a period, so that what goes before the first passage by more than half a period was no
-//! free swing.
+//! A log is usually started before the release: a hand holds the body, or draws it back, until it lets go. A
+//! free swing passes its middle twice in a period. So whatever comes more than half a period before the first
+//! passage was not a free swing.
 
 use crate::answer::Finding;
 use crate::data::observations::Observations;
 use crate::data::period::swing;
 
-/// Part of a period before the first passage that is no free swing any more; half of it, with room for a period that is
-/// longer at large amplitude.
+/// Part of a period before the first passage that is too long for a free swing. Half a period is the limit;
+/// the rest is room for a period that is longer at large amplitude.
 const TOO_LONG: f64 = 0.75;
 
-/// Cycles that a swing has to go on for afterwards.
+/// Minimum number of cycles that the swing has to go on for afterwards.
 const FEWEST_CYCLES: f64 = 3.0;
 
-/// The time in seconds up to which a record is not swinging freely; `None` where it does from the beginning, or is driven.
-/// The last quarter period before the first passage is free, but where it begins is not known.
+/// Returns the time in seconds up to which a record does not swing freely; `None` if it swings freely from
+/// its start, or is driven. The last quarter period before the first passage is free too, but its start is
+/// not known.
 pub(crate) fn held_until(record: &Observations) -> Option<f64> {
     let found = swing(&record.times_s, &record.values).filter(|_| record.input.is_none())?;
     let is_held = found.first_s > TOO_LONG * found.period_s && found.cycles >= FEWEST_CYCLES;
     is_held.then_some(found.first_s)
 }
 
-/// What is said of it.
+/// Returns the finding that reports the part left out.
 pub(crate) fn finding(until_s: f64) -> Finding {
     Finding {
         effect: None,
@@ -39,8 +40,8 @@ mod tests {
     use crate::data::observations::Observations;
     use record::{Clock, ClockChoice, Quantity, Record};
 
-    /// 20 s at 100 samples a second: what is given until some second, and from there on a swing of one period a
-    /// second, released at rest.
+    /// 20 s at 100 samples a second: `before` up to the time `until`, and from then on a swing with a period
+    /// of 1 s, released at rest.
     fn record(until: f64, before: impl Fn(f64) -> f64) -> Observations {
         let times: Vec<f64> = (0..2000).map(|i| f64::from(i) / 100.0).collect();
         let swing = |t: f64| 0.5 * (-0.1 * t).exp() * (std::f64::consts::TAU * t).cos();

@@ -1,7 +1,8 @@
-//! Records cut into segments with start states of their own: multiple shooting.
+//! Multiple shooting: records cut into segments, each with a start state of its own.
 //!
-//! A single start for a whole record lets the phase wrap and falls into local minima; a segment of a few periods
-//! does not. Each segment forgets what went before it, so that what is fitted is the law, not the history.
+//! With a single start state for a whole record the phase wraps and the fit falls into local minima; a
+//! segment of a few periods avoids this. Each segment is independent of what came before it, so that the fit
+//! finds the law and not the history.
 
 use crate::data::checks::{check, only, span};
 use crate::data::observations::Observations;
@@ -16,69 +17,71 @@ use record::Quantity;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Periods in a segment.
+/// Number of periods in a segment.
 pub(crate) const PERIODS: f64 = 6.0;
 
-/// Time constants I/c in a segment where there is no spring.
+/// Number of time constants I/c in a segment if there is no spring.
 const TIME_CONSTANTS: f64 = 3.0;
 
-/// Fewest samples of a segment.
+/// Minimum number of samples of a segment.
 const FEWEST_PER_SEGMENT: usize = 24;
 
-/// Most samples that are looked at; of more, every so many are taken for as long as a swing is still well sampled, and
-/// longer data are thinned by whole segments, so that the time of an answer is bounded.
+/// Maximum number of samples that a search uses. Longer data are strided while a swing is still well sampled,
+/// and then thinned by whole segments, so that the time of an answer is bounded.
 pub(crate) const MOST_SEARCHED: usize = 20_000;
 
-/// Samples in a period that a search looks at.
+/// Number of samples per period that a search uses.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
 
-/// Part of the input's squares that a line of it holds at least, where the motion repeats by it.
+/// Minimum share of the input's squares in the line at which a motion repeats; below it the repetition is not
+/// the input's.
 const LINE_OF_INPUT: f64 = 0.1;
 
-/// Samples in which a driven motion's repetition is looked for, at most.
+/// Maximum number of samples used to find the repetition of a driven motion.
 const MOST_REPEATED: usize = 4000;
 
-/// Steps of the sensor that a motion has to span to be seen.
+/// Number of steps of the sensor that a motion has to span to be visible.
 const FEW_STEPS: f64 = 2.5;
 
-/// Part of its largest excursion that a motion counts as visible.
+/// Part of its largest excursion above which a motion counts as visible.
 const VISIBLE: f64 = 0.02;
 
-/// A stretch of a record.
+/// Stretch of a record with a start state of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Segment {
-    /// Which record.
+    /// Index of the record.
     pub(crate) record: usize,
-    /// Whether the record begins with it: hidden states are relaxed then.
+    /// `true` if the record begins with this segment: hidden states are relaxed then.
     pub(crate) first: bool,
     pub(crate) times: Vec<f64>,
     pub(crate) values: Vec<f64>,
-    /// Whether no reading differs from the one before: it is at rest.
+    /// `true` if all readings are equal: the body is at rest.
     pub(crate) still: bool,
-    /// Where in it each of the segments begins that it was joined from; `[0]` for one as it was cut.
+    /// Index of the first sample of each segment that this one was joined from; `[0]` for a segment as it was
+    /// cut.
     pub(crate) parts: Vec<usize>,
-    /// A start state to begin a fit from: position and velocity.
+    /// Position and velocity from which a fit of the start state begins.
     pub(crate) guess: [f64; 2],
-    /// Which of the stretches between gaps of the input it lies in: segments of two stretches are never joined.
+    /// Index of the stretch between gaps of the input. Segments of two stretches are never joined.
     pub(crate) stretch: usize,
 }
 
-/// All segments, and what is common to them.
+/// All segments, with the data they share.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Data {
     pub(crate) segments: Vec<Segment>,
-    /// Each record's input.
+    /// Input of each record.
     pub(crate) inputs: Vec<Option<Input>>,
     pub(crate) quantity: Quantity,
     pub(crate) facts: Scales,
-    /// Measured period in seconds, of a free swing.
+    /// Measured period of a free swing in seconds; `None` if there is none to measure.
     pub(crate) period_s: Option<f64>,
-    /// The sensor's step, where there is one.
+    /// Step of the sensor, if the readings lie on a lattice.
     pub(crate) resolution: Option<f64>,
 }
 
 impl Segment {
-    /// From the first sample to the last, in seconds.
+    /// Returns the time from the first sample to the last, in seconds.
     pub(crate) fn span(&self) -> f64 {
         match self.times.as_slice() {
             [first, .., last] => last - first,
@@ -86,7 +89,7 @@ impl Segment {
         }
     }
 
-    /// The samples of each of the segments that it was joined from.
+    /// Returns the sample ranges of the segments that this one was joined from.
     pub(crate) fn part_ranges(&self) -> impl Iterator<Item = Range<usize>> {
         let ends = self.parts.iter().skip(1).copied().chain([self.times.len()]);
         self.parts.iter().copied().zip(ends).map(|(from, to)| from..to)
@@ -94,7 +97,7 @@ impl Segment {
 }
 
 impl Data {
-    /// Span of the longest segment, in seconds.
+    /// Returns the span of the longest segment, in seconds.
     pub(crate) fn longest_span(&self) -> f64 {
         self.segments.iter().map(Segment::span).fold(0.0, f64::max)
     }
@@ -103,30 +106,31 @@ impl Data {
         self.segments.iter().map(|segment| segment.times.len()).sum()
     }
 
-    /// Only some of the segments.
+    /// Returns the data with only the segments that `keep` accepts by index.
     pub(crate) fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
         let segments = self.segments.iter().enumerate().filter(|(index, _)| keep(*index));
         Self { segments: segments.map(|(_, segment)| segment.clone()).collect(), ..self.clone() }
     }
 
-    /// Mean time between the samples of a segment: longer than between those of the record where only every
-    /// so many are taken.
+    /// Returns the mean time between the samples of a segment, in seconds. It is longer than that of the
+    /// record if the data are strided.
     pub(crate) fn interval(&self) -> f64 {
         let steps: usize = self.segments.iter().map(|segment| segment.times.len().saturating_sub(1)).sum();
         let spans = self.segments.iter().filter_map(|s| Some(s.times.last()? - s.times.first()?));
         spans.sum::<f64>() / steps.max(1) as f64
     }
 
-    /// Every second sample or fewer, to at most so many, but no fewer in a period than a search looks at.
+    /// Strides the samples down to about `most`, but to no fewer per period than a search needs.
     pub(crate) fn sparser(&self, most: usize) -> Self {
         let wanted = self.samples().div_ceil(most.max(1));
         self.every(wanted.min(self.spare()))
     }
 
-    /// How many times more samples there are in a period, and in the shortest segment, than a search looks at.
+    /// Returns the largest stride that leaves enough samples for a search, in a period and in the shortest
+    /// segment.
     fn spare(&self) -> usize {
         let per_period = TAU / (self.facts.frequency * self.facts.interval);
-        // Without segments there is nothing to spare.
+        // Data without segments have nothing to spare.
         let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
         ((per_period / SEARCHED_PER_PERIOD) as usize).min(fewest / FEWEST_PER_SEGMENT).max(1)
     }
@@ -140,8 +144,8 @@ impl Data {
         Self { segments: segments.collect(), ..self.clone() }
     }
 
-    /// Thinned by whole segments, evenly spaced in pairs of neighbors (so that even and odd ones stay both), to at
-    /// most so many samples.
+    /// Thins the data to about `most` samples by leaving out whole segments. The kept ones are evenly spaced
+    /// pairs of neighbors, so that both even and odd segments remain.
     pub(crate) fn thinned(&self, most: usize) -> Self {
         let samples = self.samples();
         if samples <= most {
@@ -153,13 +157,13 @@ impl Data {
         self.only(|index| kept.binary_search(&(index / 2)).is_ok())
     }
 
-    /// Every so many samples only, for a search: a swing sampled 75 times a period says hardly more about which
-    /// law it follows than one sampled 20 times.
+    /// Strides the samples for a search: a swing sampled 75 times a period says hardly more about its law
+    /// than one sampled 20 times.
     pub(crate) fn strided(&self) -> Self {
         self.every(self.spare())
     }
 
-    /// The same, integrated as accurately as a noise of this size asks for.
+    /// Returns the same data, to be integrated with the accuracy that suits a noise of this size.
     pub(crate) fn for_noise(&self, noise: f64) -> Self {
         let values = || self.segments.iter().flat_map(|segment| segment.values.iter().copied());
         let span = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
@@ -170,7 +174,7 @@ impl Data {
         self.inputs.iter().any(Option::is_some)
     }
 
-    /// The same with another belief about the input between its samples.
+    /// Returns the same data with another hold of the input between its samples.
     pub(crate) fn holding(&self, hold: Hold) -> Result<Self, DiagnosisError> {
         let inputs = self.inputs.iter().map(|input| {
             input.as_ref().map(|i| Input::new(i.times().to_vec(), i.values().to_vec(), hold)).transpose()
@@ -179,7 +183,8 @@ impl Data {
     }
 }
 
-/// Checks records against the nominal simulator and cuts them. `kept` tells which samples are no outliers.
+/// Checks records against the nominal simulator and cuts them into segments. `kept` is `true` for each sample
+/// that is not an outlier.
 pub(crate) fn cut(
     records: &[Observations],
     kept: &[Vec<bool>],
@@ -203,7 +208,8 @@ pub(crate) fn cut(
         let samples = times.iter().copied().zip(values.iter().copied());
         let samples = samples.take_while(|(time, _)| *time <= end);
         for Piece { at, stretch, times, values } in pieces(record, (count, length), samples) {
-            // Dropouts may empty a segment; what is left of it says nothing against two free start values.
+            // Dropouts may nearly empty a segment. The few samples that remain say nothing beside two free
+            // start values.
             if times.len() < FEWEST_PER_SEGMENT / 2 {
                 continue;
             }
@@ -226,8 +232,9 @@ pub(crate) fn cut(
     Ok(Data { segments, inputs, quantity: first.quantity, facts, period_s, resolution })
 }
 
-/// Whether all values lie on a few neighboring steps of the sensor: what the motion does between them is not seen, and
-/// rounding follows it instead of being noise. What does not change at all is at rest, and that says something.
+/// Returns `true` if all values lie on a few neighboring steps of the sensor. Motion between the steps is not
+/// visible, and rounding then follows the motion instead of acting as noise. Constant values return `false`:
+/// the body is at rest, which is information.
 fn swings_within(values: &[f64], resolution: Option<f64>) -> bool {
     let span = span(values);
     span > 0.0 && resolution.is_some_and(|step| span <= FEW_STEPS * step)
@@ -235,7 +242,7 @@ fn swings_within(values: &[f64], resolution: Option<f64>) -> bool {
 
 fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
     let Some(values) = &record.input else { return Ok(None) };
-    // Equal times carry no function of time; the last of each group stands.
+    // Two inputs at the same time are no function of time; the last of each group is kept.
     let mut times: Vec<f64> = Vec::new();
     let mut kept: Vec<f64> = Vec::new();
     let sampled = record.times_s.iter().copied().zip(values.iter().copied());
@@ -252,10 +259,11 @@ fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
     Ok(Some(Input::new(times, kept, Hold::Linear)?))
 }
 
-/// Number of segments of a record, their length, and where the last ends.
+/// Returns the number of segments of a record, their length in seconds, and the time at which the last one
+/// ends.
 ///
-/// A swing that comes to rest within two segments is cut into two all the same, and of the rest that follows
-/// only as much is kept as there was motion: a body at rest says once what holds it.
+/// A swing that comes to rest within less than one and a half segments is still cut into two. Of the rest
+/// that follows, only as much is kept as there was motion: a body at rest says only once what holds it.
 fn cuts(
     record: &Observations,
     simulator: &NominalSimulator,
@@ -279,16 +287,16 @@ fn cuts(
     (count, record.duration_s() / count as f64, record.duration_s())
 }
 
-/// When the last visible motion ends.
+/// Returns the time at which the last visible motion ends, in seconds.
 fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
-    // Fewer than ten samples have no last tenth: their rest is taken for zero.
+    // Fewer than ten samples have no last tenth; the rest position is then taken to be zero.
     let last = values.get(values.len() - values.len() / 10..).unwrap_or_default();
     let rest = median(last);
     let span = values.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
-    // Without a stated resolution any motion is visible.
+    // Without a stated resolution only the size of the motion counts.
     let visible = (3.0 * record.resolution.unwrap_or(0.0)).max(VISIBLE * span);
     let moving = times.iter().zip(values).rev().find(|(_, value)| (**value - rest).abs() > visible);
-    // What never moves has stopped at once.
+    // A motion that is never visible ends at time zero.
     moving.map_or(0.0, |(time, _)| *time)
 }
 
@@ -306,7 +314,7 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         Quantity::Acceleration => 1.0 / (frequency * frequency),
     };
     let (rest, _) = simulator.equilibrium();
-    // Rates swing about zero, positions about where the spring rests.
+    // Rates swing about zero, positions about the equilibrium.
     let center = if quantity == Quantity::Position { 0.0 } else { rest };
     let values = || records.iter().flat_map(|record| record.values.iter().copied());
     let highest = center + to_position * values().fold(f64::NEG_INFINITY, f64::max);
@@ -351,13 +359,13 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
     }
 }
 
-/// Whether the simulator has Coulomb friction whose torque is recalibrated.
+/// Returns `true` if the simulator has Coulomb friction whose torque is recalibrated.
 fn knows_friction(simulator: &NominalSimulator) -> bool {
     simulator.effects().iter().any(|known| known.recalibrate && known.active.id() == "coulomb_friction")
 }
 
-/// How a driven motion repeats: at the line that holds most of its squares, if the input has that line too. Otherwise it is
-/// something else's.
+/// Returns the repetition of a driven motion: the line that holds most of its squares, provided that the
+/// input has that line too. Otherwise the line has another cause, and the result is `None`.
 fn repeats(record: &Observations) -> Option<Repeats> {
     let stride = record.len().div_ceil(MOST_REPEATED);
     let times: Vec<f64> = record.times_s.iter().copied().step_by(stride).collect();
@@ -368,7 +376,8 @@ fn repeats(record: &Observations) -> Option<Repeats> {
     Some(Repeats { frequency, resolution: TAU / record.duration_s() })
 }
 
-/// Large speeds of a drive without a spring, from differences of positions over stretches of samples.
+/// Returns a large speed (95 % quantile) of a drive without a spring, from differences of positions over
+/// stretches of samples.
 fn speed(records: &[Observations]) -> f64 {
     let mut speeds = Vec::new();
     for record in records {
@@ -381,8 +390,8 @@ fn speed(records: &[Observations]) -> f64 {
     quantile(&speeds, 0.95).max(f64::MIN_POSITIVE)
 }
 
-/// Position and velocity at a segment's begin: a harmonic with an offset through its first period, or a parabola
-/// through its first samples where nothing swings.
+/// Estimates position and velocity at the start of a segment: from a harmonic with an offset through its
+/// first period, or from a parabola through its first samples if nothing swings.
 fn guess(
     times: &[f64],
     values: &[f64],
@@ -391,7 +400,7 @@ fn guess(
     period_s: Option<f64>,
     simulator: &NominalSimulator,
 ) -> [f64; 2] {
-    // A segment has times; without any the line begins at zero.
+    // A segment has times; without any, the fit would start at zero.
     let start = times.first().copied().unwrap_or_default();
     let omega = facts.frequency;
     let (rest, stiffness) = simulator.equilibrium();
@@ -426,7 +435,7 @@ fn guess(
         (Quantity::Velocity, true) => [rest - sine / omega, cosine],
         (Quantity::Velocity, false) => [rest, offset],
         (Quantity::Acceleration, true) => [rest - cosine / (omega * omega), -sine / omega],
-        // Nothing swings: an acceleration says where the spring pulls and nothing of the speed.
+        // Without a swing, an acceleration tells the spring's pull but not the speed.
         (Quantity::Acceleration, false) => [rest - offset / (omega * omega), 0.0],
     }
 }

@@ -1,10 +1,10 @@
-//! How far a fit follows the motion from one start state.
+//! Shooting intervals: the time over which a fit predicts the motion from one start state.
 //!
-//! A segment of a few periods forgets what went before it: fits cannot lose count of the swings, and a
-//! disturbance spoils one segment only. But forgetting costs sight. An effect that shows in how swings add up
-//! over the whole record (a frequency or a decay that changes little by little) all but vanishes where every
-//! segment has a start state of its own. So segments are joined, two by two, for as long as a model follows:
-//! at the end a record has one start state.
+//! With segments of a few periods a fit cannot lose count of the swings, and a disturbance spoils only one
+//! segment. But short segments are less sensitive. An effect that accumulates over the whole record (a
+//! frequency or a decay that changes little by little) all but vanishes if every segment has a start state of
+//! its own. So segments are joined, two by two, for as long as a model follows the motion; in the end a
+//! record may have a single start state.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Fit, Point, extended};
@@ -16,20 +16,22 @@ use dynamics::DynamicsError;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-/// Factor by which the recalibrated simulator's error may grow on a longer horizon: it is not the whole truth.
+/// Factor by which the recalibrated simulator's error may grow on a longer shooting interval, since it is not
+/// the complete model.
 const RECALIBRATED: f64 = 2.0;
 
-/// Factor by which the error of a set that is to be judged there may grow.
+/// Factor by which the error of a set may grow on a longer shooting interval if the set is to be judged
+/// there.
 const JUDGED: f64 = 1.1;
 
-/// Error relative to the motion up to which linearizations hold: a phase error in radians.
+/// Largest error relative to the motion at which a linearization still holds, as a phase error in radians.
 const LINEAR: f64 = 0.05;
 
-/// Sets that are tried on a longer horizon.
+/// Number of sets that are tried on a longer shooting interval.
 const TRIED: usize = 6;
 
 impl Data {
-    /// Neighboring segments of each record joined by so many.
+    /// Joins neighboring segments of each record, up to `by` segments into one.
     pub(crate) fn joined(&self, by: usize) -> Self {
         let mut segments: Vec<Segment> = Vec::new();
         let mut members = 0;
@@ -53,15 +55,15 @@ impl Data {
         Self { segments, ..self.clone() }
     }
 
-    /// For each segment of this horizon, which of the unjoined data's it begins with.
+    /// Returns, for each segment, the index of the unjoined segment that it begins with.
     pub(crate) fn firsts(&self) -> Vec<usize> {
         let counts = self.segments.iter().map(|segment| segment.parts.len());
         counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
     }
 
-    /// The joined parts that `keep` names, numbered as the unjoined segments are, and of every segment its
-    /// very first sample, where its start state stands. Segments of one part are kept or left out as a whole.
-    /// Gives the kept segments' numbers too.
+    /// Keeps the parts that `keep` accepts by the index of their unjoined segment, plus the first sample of
+    /// every kept segment, because its start state applies there. Segments without an accepted part are left
+    /// out. Also returns the indices of the kept segments.
     pub(crate) fn masked(&self, keep: &dyn Fn(usize) -> bool) -> (Self, Vec<usize>) {
         let mut segments = Vec::new();
         let mut numbers = Vec::new();
@@ -74,14 +76,14 @@ impl Data {
         (Self { segments, ..self.clone() }, numbers)
     }
 
-    /// The samples that `keep` names by segment and place, and of every segment its very first one, where its start state
-    /// stands.
+    /// Keeps the samples that `keep` accepts by the indices of segment and sample, plus the first sample of
+    /// every segment, because its start state applies there.
     pub(crate) fn keeping(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
         let of = |(number, own): (usize, &Segment)| own.keeping(|sample| keep(number, sample));
         Self { segments: self.segments.iter().enumerate().map(of).collect(), ..self.clone() }
     }
 
-    /// Residuals on this horizon by unjoined segment.
+    /// Splits residuals on this shooting interval into those of the unjoined segments.
     pub(crate) fn by_part(&self, residuals: &[DVector<f64>]) -> Vec<DVector<f64>> {
         let mut all = Vec::new();
         for (segment, residual) in self.segments.iter().zip(residuals) {
@@ -90,14 +92,14 @@ impl Data {
         all
     }
 
-    /// Whether any segment is a joined one.
+    /// Returns `true` if any segment was joined from several.
     pub(crate) fn is_joined(&self) -> bool {
         self.segments.iter().any(|segment| segment.parts.len() > 1)
     }
 }
 
 impl Segment {
-    /// Some of the samples, and the very first one.
+    /// Keeps the samples that `keep` accepts, and always the first one.
     fn keeping(&self, keep: impl Fn(usize) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.times.len()).filter(|&sample| sample == 0 || keep(sample)).collect();
         let pick = |values: &[f64]| kept.iter().filter_map(|&at| values.get(at).copied()).collect();
@@ -113,15 +115,17 @@ fn mean_square(fit: &Fit) -> f64 {
     fit.squares / fit.samples().max(1) as f64
 }
 
-/// Mean square of the observed values about their mean.
+/// Returns the mean square of the observed values about their mean.
 fn motion(data: &Data) -> f64 {
     let values: Vec<f64> = data.segments.iter().flat_map(|segment| segment.values.iter().copied()).collect();
     let center = crate::noise::statistics::mean(&values);
     values.iter().map(|value| (value - center).powi(2)).sum::<f64>() / values.len().max(1) as f64
 }
 
-/// A fit on a horizon twice as long, begun where each joined segment begins. It is given up where its mean square,
-/// for each degree of freedom, will not come below a bound.
+/// Fits a set on data joined twice as far, from the start states that the shorter segments have there.
+///
+/// The fit stops early if its mean square per degree of freedom will not fall below `below`. `None` if a
+/// start state is missing or the motion cannot be computed.
 fn lengthened(longer: &Data, shorter: &Data, found: &Fit, below: f64) -> Option<Fit> {
     let places = shorter.firsts();
     let starts = longer
@@ -137,8 +141,8 @@ fn lengthened(longer: &Data, shorter: &Data, found: &Fit, below: f64) -> Option<
     fit(longer, &found.hypothesis, point, Moving::All, effort).ok()
 }
 
-/// A fit on the unjoined segments that passes through the states of a fit on a longer horizon; only start states are
-/// fitted.
+/// Transfers a fit on joined segments to the unjoined ones. The start states are taken along the fitted
+/// motion, and only they are refitted.
 pub(crate) fn shortened(segments: &Data, longer: &Data, found: &Fit) -> Result<Fit, DynamicsError> {
     if !longer.is_joined() {
         return Ok(found.clone());
@@ -157,7 +161,7 @@ pub(crate) fn shortened(segments: &Data, longer: &Data, found: &Fit) -> Result<F
     fit(segments, &found.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)
 }
 
-/// Data joined by some number, and the recalibrated simulator on them.
+/// Data with segments joined by some number, and the recalibrated simulator fitted to them.
 #[derive(Debug, Clone)]
 pub(crate) struct ShootingInterval {
     pub(crate) by: usize,
@@ -166,12 +170,12 @@ pub(crate) struct ShootingInterval {
 }
 
 impl ShootingInterval {
-    /// The shortest: the segments as they were cut.
+    /// Returns the shortest shooting interval: the segments as they were cut.
     pub(crate) fn shortest(data: &Data, calibrated: &Fit) -> Self {
         Self { by: 1, data: data.clone(), calibrated: calibrated.clone() }
     }
 
-    /// Twice as long; `None` where there is nothing left to join or the fits fail.
+    /// Doubles the shooting interval; `None` if nothing is left to join or the fit fails.
     fn doubled(&self, segments: &Data) -> Option<Self> {
         let by = 2 * self.by;
         let data = segments.joined(by);
@@ -182,7 +186,7 @@ impl ShootingInterval {
         Some(Self { by, data, calibrated })
     }
 
-    /// Segments joined by a power of two; `None` where there are not so many to join or the fits fail.
+    /// Joins segments by `by`, a power of two; `None` if there are not enough to join or a fit fails.
     pub(crate) fn joined(segments: &Data, calibrated: &Fit, by: usize) -> Option<Self> {
         let mut interval = Self::shortest(segments, calibrated);
         while interval.by < by {
@@ -191,7 +195,8 @@ impl ShootingInterval {
         Some(interval)
     }
 
-    /// The longest on which the recalibrated simulator is still a model to linearize at.
+    /// Returns the longest shooting interval on which the recalibrated simulator is still close enough to
+    /// linearize.
     pub(crate) fn longest(segments: &Data, calibrated: &Fit) -> Self {
         let mut horizon = Self::shortest(segments, calibrated);
         let (shortest, motion) = (mean_square(calibrated), motion(segments));
@@ -205,12 +210,13 @@ impl ShootingInterval {
         horizon
     }
 
-    /// The longest on which the fit follows the motion as well as on this one, but for chance.
+    /// Returns the longest shooting interval on which the fit follows the motion as well as on this one, up
+    /// to chance.
     pub(crate) fn farthest(self, segments: &Data) -> Self {
         let mut horizon = self;
         let each = |own: &Self| own.calibrated.squares / own.calibrated.freedom();
         while let Some(longer) = horizon.doubled(segments) {
-            // Two standard errors of a mean square of so many samples that say something new.
+            // Two standard errors of a mean square of so many independent samples.
             let worth = horizon.calibrated.freedom() / horizon.calibrated.autocorrelation_time();
             let by_chance = 1.0 + 2.0 * (2.0 / worth).sqrt();
             if each(&longer) > by_chance * each(&horizon) {
@@ -221,7 +227,8 @@ impl ShootingInterval {
         horizon
     }
 
-    /// Whether the best set of a pool on this horizon follows the motion as well as it does segment by segment.
+    /// Returns `true` if the best set of a pool follows the motion on this shooting interval as well as
+    /// segment by segment.
     pub(crate) fn is_followed(&self, segments: &Data, pool: &Archive) -> bool {
         let time = pool.autocorrelation_time();
         pool.ranked(time).first().is_some_and(|best| {
@@ -229,15 +236,15 @@ impl ShootingInterval {
             let short = short.and_then(|short| {
                 fit(segments, &short.hypothesis, short.point, Moving::All, Stopping::HELD_OUT)
             });
-            // Every start state takes its two degrees of freedom out of the squares.
+            // Every start state takes its degrees of freedom out of the sum of squares.
             short.is_ok_and(|short| {
                 best.squares / best.freedom() <= JUDGED * JUDGED * short.squares / short.freedom()
             })
         })
     }
 
-    /// The longest horizon on which the best of a pool's sets still follow, with these sets on it; `None` where that is
-    /// this one.
+    /// Returns the longest shooting interval on which the best sets of a pool still follow the motion, with
+    /// the fits of these sets on it; `None` if that is the present one.
     pub(crate) fn beyond(&self, segments: &Data, pool: &Archive) -> Option<(Self, Vec<Fit>)> {
         let time = pool.autocorrelation_time();
         let best: Vec<Fit> = pool
@@ -253,7 +260,7 @@ impl ShootingInterval {
         let mut horizon = self.clone();
         while let Some(longer) = horizon.doubled(segments) {
             let most = JUDGED * JUDGED * first;
-            // What ends there as something else, or as nothing, does not follow.
+            // A set does not follow if it ends there as another effect or as none.
             let kept: Vec<Fit> = sets
                 .par_iter()
                 .filter_map(|set| lengthened(&longer.data, &horizon.data, set, most))
@@ -289,7 +296,7 @@ mod tests {
         Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap()
     }
 
-    /// 20 s of a swing at 3.5 Hz, 100 samples a second, noise of 1 mrad, with some effects.
+    /// 20 s of a swing at 3.5 Hz with some effects, 100 samples a second, noise of 1 mrad.
     fn observed(effects: &[(&str, &[f64])]) -> Observations {
         let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
         let system = System::new(nominal(), active).unwrap();
@@ -341,7 +348,7 @@ mod tests {
         assert!(none.segments.is_empty() && numbers.is_empty());
     }
 
-    /// Where nothing is missing the whole record follows from one start state, and the states along it fit
+    /// Without a missing effect the whole record follows from one start state, and the states along it fit
     /// each segment.
     #[test]
     fn a_record_without_effects_is_followed_as_a_whole() {
@@ -356,8 +363,8 @@ mod tests {
         assert!((short.squares / horizon.calibrated.squares - 1.0).abs() < 0.05);
     }
 
-    /// A softening whose frequency shift adds up over the record: 2.3e-3 of the spring's torque at most, next
-    /// to nothing within six periods.
+    /// A softening whose frequency shift accumulates over the record: at most 2.3e-3 of the spring's torque,
+    /// next to nothing within six periods.
     #[test]
     fn what_adds_up_over_a_record_is_seen() {
         let observations = observed(&[("cubic_stiffness", &[-3.0])]);

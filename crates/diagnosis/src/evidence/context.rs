@@ -1,4 +1,4 @@
-//! What the later stages share: the fits, and what follows from comparing them.
+//! Context shared by the later stages: the fits, and comparisons between them.
 
 use crate::answer::{Detectability, Interval, Rivalry};
 use crate::data::segments::Data;
@@ -21,18 +21,20 @@ use crate::search::refine::without;
 use crate::settings::Settings;
 use rayon::prelude::*;
 
-/// Probability with which a right rest angle is called shifted: that is an effect's name and adds to the false alarms.
+/// Probability of a false alarm at which a shift of the rest angle counts as significant. It is low because
+/// the shift is named as an effect.
 const SHIFTED_BY_CHANCE: f64 = 0.001;
 
-/// Standard errors of a clock's rate, squared in the stiffness, within which a stiffness may be the clock's doing.
+/// Number of standard errors of the clock's rate within which a change of the stiffness may be due to the
+/// clock. The stiffness depends on the square of the rate.
 const STANDARD_ERRORS: f64 = 3.0;
 
-/// What the later stages share.
+/// Data, fits and settings shared by the later stages.
 pub(crate) struct Context<'a> {
-    /// On the longest horizon that the best sets follow.
+    /// Data on the longest shooting interval that the best sets follow.
     pub(crate) data: &'a Data,
     pub(crate) base: &'a Baseline,
-    /// The segments as they were cut.
+    /// Unjoined segments, each with its own start state.
     pub(crate) segments: Unjoined<'a>,
     pub(crate) pool: &'a Archive,
     pub(crate) thin: Thin<'a>,
@@ -40,68 +42,69 @@ pub(crate) struct Context<'a> {
     pub(crate) settings: &'a Settings,
 }
 
-/// The segments as they were cut, each with a start state of its own.
+/// Unjoined segments, each with its own start state.
 #[derive(Clone, Copy)]
 pub(crate) struct Unjoined<'a> {
     pub(crate) data: &'a Data,
     pub(crate) base: &'a Baseline,
 }
 
-/// The same on fewer samples: enough for shares, and many times as fast.
+/// The same data on fewer samples: enough for shares of the gap, and many times as fast.
 pub(crate) struct Thin<'a> {
     pub(crate) data: &'a Data,
     pub(crate) calibrated: &'a Fit,
     pub(crate) pool: &'a Archive,
 }
 
-/// A set and what it predicts of parts that it was not fitted to.
+/// Set of effects with its held-out predictions.
 pub(crate) struct Predicted<'a> {
-    /// On the shooting interval that it was judged on, and on the segments as they were cut.
+    /// Fit on the shooting interval that the set was judged on; `fitted` is the fit on the unjoined segments.
     pub(crate) followed: &'a Fit,
     pub(crate) fitted: Fit,
     pub(crate) after: HeldOut,
 }
 
-/// What all of them predict.
+/// Held-out predictions of the simulators and of all sets.
 pub(crate) struct Predictions<'a> {
     pub(crate) nominal: HeldOut,
     pub(crate) recalibrated: HeldOut,
-    /// Mean square of the recalibrated simulator on the last third, fitted to the first two.
+    /// Mean square error of the recalibrated simulator on the last third, fitted to the first two thirds.
     pub(crate) last_third: f64,
     pub(crate) sets: Vec<Predicted<'a>>,
 }
 
-/// Held-out residuals, and the set that they and the evidence speak for.
+/// Held-out residuals, and the set that they and the evidence support.
 pub(crate) struct Held<'a> {
     pub(crate) nominal: HeldOut,
     pub(crate) recalibrated: HeldOut,
     pub(crate) after: HeldOut,
-    /// Mean squares on the last third, recalibrated and repaired.
+    /// Mean square errors on the last third, recalibrated and repaired.
     pub(crate) last_third: [f64; 2],
-    /// The set on the horizon that it was judged on.
+    /// Fit of the set on the shooting interval that it was judged on.
     pub(crate) repaired: &'a Fit,
-    /// The same on the segments as they were cut.
+    /// Fit of the set on the unjoined segments.
     pub(crate) fitted: Fit,
 }
 
-/// A shift of the rest angle and nothing else.
+/// Shift of the rest angle that alone explains the recalibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shift {
-    /// Torque that shifts it.
+    /// Constant torque that causes the shift.
     pub(crate) torque: Interval,
 }
 
 impl<'a> Context<'a> {
-    /// Whether, beside the effects of a set, a shifted rest angle alone does what the whole calibration does:
-    /// that is a constant torque.
+    /// Returns the shift of the rest angle if, beside the effects of a set, the shift alone improves the fit
+    /// as much as the whole calibration does: this is a constant torque.
     pub(crate) fn shift(&self, repaired: &Fit) -> Option<Shift> {
         let own = &repaired.hypothesis;
-        // A set without effects has none of their values.
+        // A set without effects has no parameters of effects.
         let effects = repaired.point.globals.get(own.calibrated.len()..).unwrap_or_default();
         if !own.calibrated.contains(&Coefficient::RestAngle) {
             return None;
         }
-        // Effects that cannot be followed beside the given coefficients do not go with a mere shift.
+        // If the effects cannot be fitted beside the given coefficients, a mere shift does not explain the
+        // calibration.
         let with = |calibrated: Vec<Coefficient>| {
             let hypothesis = Hypothesis { calibrated, ..own.clone() };
             let globals = [hypothesis.nominal_point().as_slice(), effects].concat();
@@ -116,19 +119,19 @@ impl<'a> Context<'a> {
         };
         let mut shifted = with(vec![Coefficient::RestAngle])?;
         if !is_all(&shifted) {
-            // A clock whose rate is not known exactly is a spring that is not.
+            // An uncertain rate of the clock acts like an uncertain stiffness.
             let allowed = STANDARD_ERRORS * 2.0 * self.data.facts.rate_error;
             let both = [Coefficient::RestAngle, Coefficient::Stiffness];
             let has_both = both.iter().all(|which| own.calibrated.contains(which));
             let freed = if has_both && allowed > 0.0 { with(both.to_vec()) } else { None };
             let is_the_clock = |freed: &Fit| {
-                // Two are moved: rest angle and stiffness.
+                // Two coefficients are moved: rest angle and stiffness.
                 let stiffness = freed.point.globals.get(1).copied().unwrap_or_default();
                 (stiffness / own.nominal.stiffness() - 1.0).abs() < allowed
             };
             shifted = freed.filter(|freed| is_the_clock(freed) && is_all(freed))?;
         }
-        // The same without the shift.
+        // The same fit without the shift.
         let others = shifted.hypothesis.calibrated.iter().skip(1).copied().collect::<Vec<_>>();
         let bare =
             if effects.is_empty() && others.is_empty() { self.base.nominal.clone() } else { with(others)? };
@@ -137,7 +140,7 @@ impl<'a> Context<'a> {
         }
         let nominal = &own.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
-        // The rest angle is moved first.
+        // The rest angle is the first of the moved coefficients.
         let angle = shifted.point.globals.first().copied().unwrap_or_default();
         let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
         let reach = normal_above(0.025) * error;
@@ -145,8 +148,9 @@ impl<'a> Context<'a> {
         Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
     }
 
-    /// Predicts held-out parts with the simulator as given, with the recalibrated one (as given, where a recalibration predicts
-    /// worse), and with every set that is asked; sets whose motion cannot be followed from parts of the data predict nothing and are left out.
+    /// Predicts held-out parts with the nominal simulator, with the recalibrated one (the nominal one, if
+    /// recalibration predicts worse), and with the given sets. Sets whose motion cannot be simulated from
+    /// parts of the data are left out.
     pub(crate) fn predictions(&self, sets: &[&'a Fit]) -> Result<Predictions<'a>, DiagnosisError> {
         let short = self.segments.base;
         let own = |followed: &'a Fit, fitted: &'a Fit| Both {
@@ -155,12 +159,13 @@ impl<'a> Context<'a> {
             segments: self.segments.data,
             fitted,
         };
-        // As given it loses count of the swings on longer stretches, and no start state suits it there.
+        // On longer stretches the nominal simulator loses count of the swings, and no start state fits.
         let given = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
         let nominal = given.interleaved(Moving::Starts)?;
         let calibrated = own(&self.base.calibrated, &short.calibrated);
         let recalibrated = calibrated.interleaved(Moving::All)?;
-        // Many coefficients, fitted to half of a record, may predict the other half worse than they do as given.
+        // Many coefficients fitted to half of a record may predict the other half worse than the nominal
+        // ones.
         let (recalibrated, last_third) = if recalibrated.mean_square() > nominal.mean_square() {
             (nominal.clone(), given.last_third(Moving::Starts)?)
         } else {
@@ -170,7 +175,8 @@ impl<'a> Context<'a> {
         Ok(Predictions { nominal, recalibrated, last_third, sets })
     }
 
-    /// What a set predicts of held-out parts; none where its motion cannot be followed from parts of the data.
+    /// Returns the held-out predictions of a set; `None` if its motion cannot be simulated from parts of the
+    /// data.
     pub(crate) fn predicted(&self, followed: &'a Fit) -> Option<Predicted<'a>> {
         let segments = self.segments.data;
         let fitted = shortened(segments, self.data, followed).ok()?;
@@ -179,7 +185,8 @@ impl<'a> Context<'a> {
         Some(Predicted { followed, fitted, after })
     }
 
-    /// The named set with what it predicts; the recalibrated simulator where none is named or the set predicts no better.
+    /// Returns the set of the named effects with its predictions; the recalibrated simulator if none is named
+    /// or no predicted set has exactly these effects.
     pub(crate) fn held_out(
         &self,
         predictions: Predictions<'a>,
@@ -202,10 +209,11 @@ impl<'a> Context<'a> {
         Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired, fitted })
     }
 
-    /// By how much each subset of a set's effects, numbered by its bits, lowers the squares of each part of thin data.
+    /// Returns the decrease of the sum of squares by each subset of a set's effects, for each part of the
+    /// thin data. The bits of the index are the subset's members.
     fn worths(&self, repaired: &Fit) -> Vec<Vec<f64>> {
         let count = repaired.hypothesis.candidates.len();
-        // A set that was not fitted to thin data leaves all of the gap to be explained.
+        // A set that was not fitted to the thin data leaves the whole gap to be explained.
         let closest = self.thin.pool.find(&repaired.hypothesis.candidates).map_or(0.0, |own| own.squares);
         let effort = Stopping::share((self.thin.calibrated.squares - closest).max(0.0));
         let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
@@ -232,7 +240,8 @@ impl<'a> Context<'a> {
                 before.iter().zip(squares).map(|(before, after)| before - after).collect()
             })
             .collect();
-        // A set explains at least what its subsets do; where its own fit ended in a hollow, the best of theirs stands.
+        // A set explains at least as much as its subsets. If its own fit ended in a local minimum, the best
+        // of theirs is taken.
         for set in 0..worths.len() {
             // There is a worth for every set.
             let total = |set: usize| worths.get(set).map_or(0.0, |own| own.iter().sum::<f64>());
@@ -248,8 +257,9 @@ impl<'a> Context<'a> {
         worths
     }
 
-    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its
-    /// interval from a bootstrap over segments.
+    /// Returns, for each effect of a set, the decrease of the sum of squares that it causes (Shapley value),
+    /// and its share in the decrease by all effects. The interval of the share is from a bootstrap over
+    /// segments.
     pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
         let count = repaired.hypothesis.candidates.len();
         let worths = self.worths(repaired);
@@ -288,7 +298,8 @@ impl<'a> Context<'a> {
             .collect()
     }
 
-    /// What could stand in the place of each effect, closest first; and the closest set.
+    /// Returns the rivals of each effect, closest first, and the closest rival set. A rival set differs from
+    /// the given one by one replaced effect.
     pub(crate) fn rivals(&self, repaired: &Fit) -> (Vec<Rivalry>, Option<&'a Fit>) {
         let own = &repaired.hypothesis.candidates;
         let mut found: Vec<(Rivalry, &'a Fit)> = Vec::new();
@@ -303,7 +314,7 @@ impl<'a> Context<'a> {
                 found.push((Rivalry { effect: gone.id(), rival: come.id(), distance }, fit));
             }
         }
-        // A generalization that was given up because it came out as the member itself is no distance away.
+        // A generalization that was rejected because it reduced to the member itself is at distance 0.
         for member in own {
             for &general in Candidate::ALL.iter().filter(|general| general.generalizes() == Some(*member)) {
                 let swapped = repaired
@@ -347,8 +358,9 @@ mod tests {
     use dynamics::{Active, Nominal, System};
     use record::{Clock, ClockChoice};
 
-    /// What is said of 25 s of a swing under a constant torque, 260 samples a second in bursts whose receive times
-    /// scatter by 2.5 ms: the swing shows more finely than these whether the rate is right.
+    /// Returns the diagnosis of 25 s of a swing under a constant torque, with 260 samples a second in bursts
+    /// whose receive times scatter by 2.5 ms. The swing determines the rate more precisely than these times
+    /// do.
     fn diagnosed(torque: f64, seed: u64) -> Diagnosis {
         let nominal = Nominal::new(1.0, 0.19, 55.0, 0.0).unwrap();
         let preload = Active::new("constant_torque", &[torque]).unwrap();

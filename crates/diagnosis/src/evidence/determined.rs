@@ -1,16 +1,16 @@
-//! Which numbers the data determine.
+//! Test of whether the data determine a number.
 //!
-//! A number is not determined where its 95 % interval is wider, to either side, than the scale of the motion over which
-//! it would make a difference, and does not tell it from none: a rest angle that may lie anywhere within the swing, a
-//! damping that may be critical or nothing. Scales follow from the motion alone: its amplitude, its frequency, the
-//! inertia.
+//! A number is not determined if its 95 % interval extends, to either side, beyond the scale of the motion
+//! over which the number makes a difference, and if the interval includes zero: a rest angle anywhere within
+//! the swing, a damping between none and critical. The scales follow from the motion alone: its amplitude,
+//! its frequency, the inertia.
 
 use crate::answer::Interval;
 use crate::data::scales::Scales;
 use dynamics::Quantity;
 use std::f64::consts::PI;
 
-/// The size of a quantity at which it does as much as all that moves the body does.
+/// Returns the size at which a quantity has as much effect as all other causes of the motion.
 fn scale(facts: &Scales, quantity: Quantity) -> f64 {
     let (amplitude, speed) = (facts.amplitude, facts.speed);
     match quantity {
@@ -39,17 +39,17 @@ fn scale(facts: &Scales, quantity: Quantity) -> f64 {
     }
 }
 
-/// How many times the scale of the motion an interval reaches to either side.
+/// Returns the half width of an interval in units of the scale of the motion; infinite if it is not a number.
 pub(crate) fn reach(facts: &Scales, quantity: Quantity, estimate: &Interval) -> f64 {
     let [low, high] = estimate.interval_95;
     let reach = 0.5 * (high - low) / scale(facts, quantity);
     if reach.is_nan() { f64::INFINITY } else { reach }
 }
 
-/// Whether the data determine a number.
+/// Returns `true` if the data determine a number.
 pub(crate) fn says_something(facts: &Scales, quantity: Quantity, estimate: &Interval) -> bool {
     let [low, high] = estimate.interval_95;
-    // No position and no angle is none.
+    // For a position or an angle, zero does not mean absence.
     let has_a_zero = !matches!(quantity, Quantity::Position | Quantity::Angle);
     let is_told_from_none = has_a_zero && (low > 0.0 || high < 0.0);
     is_told_from_none || reach(facts, quantity, estimate) <= 1.0

@@ -1,9 +1,9 @@
-//! A free latent torque: what a torque without a name could still explain.
+//! Free latent torque: an upper bound of what a torque without a name could still explain.
 //!
-//! A smooth function of position, velocity, time and the input in a tensor basis of low order, added to the
-//! fitted system to first order, its coefficients fitted to interleaved segments and scored on the others.
-//! Where it beats the best named effects clearly, something without a name is at work; where it does not,
-//! nothing smooth is left.
+//! It is a smooth function of position, velocity, time and the input in a tensor basis of low order, added to
+//! the fitted system to first order. Its coefficients are fitted to interleaved segments and scored on the
+//! others. If it clearly beats the best named effects, something without a name acts; otherwise nothing
+//! smooth is left.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
@@ -17,10 +17,10 @@ use nalgebra::{DMatrix, DVector};
 /// Highest total degree in position and velocity.
 const DEGREE: i32 = 5;
 
-/// Weight that keeps coefficients small, relative to the columns' own squares.
+/// Weight of the ridge penalty, relative to the columns' own squares.
 const RIDGE: f64 = 1e-4;
 
-/// Chebyshev polynomial of the first kind.
+/// Evaluates a Chebyshev polynomial of the first kind.
 fn chebyshev(degree: i32, x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
     (f64::from(degree) * x.acos()).cos()
@@ -29,7 +29,8 @@ fn chebyshev(degree: i32, x: f64) -> f64 {
 /// Highest degree in the input.
 const INPUT_DEGREE: i32 = 5;
 
-/// Smooth functions of position, velocity and time, and of the input where there is one, each of order one.
+/// Returns smooth functions of position, velocity and time, and of the input if there is one, each of order
+/// one. `rest` is the rest angle.
 pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Smooth> {
     let (a, v, t) = (1.05 * data.facts.amplitude, 1.05 * data.facts.speed, data.facts.duration);
     let mut basis: Vec<Smooth> = Vec::new();
@@ -42,7 +43,7 @@ pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Smooth> {
             }
         }
     }
-    // Friction has an edge at rest that no polynomial follows.
+    // Friction has a jump at rest that no polynomial follows.
     basis.push(Box::new(|m| m.velocity.signum()));
     basis.push(Box::new(move |m| m.velocity.signum() * ((m.position - rest) / a)));
     for degree in 1..=2 {
@@ -69,8 +70,8 @@ pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Smooth> {
     basis
 }
 
-/// Held-out residuals of a fit after the latent torque, by segment: fitted to the even segments and scored on the odd
-/// ones, and the other way round. `paths` are the fit's.
+/// Returns the held-out residuals of a fit after the latent torque, by segment: fitted to the even segments
+/// and scored on the odd ones, and the other way round. `paths` are the fit's.
 pub(crate) fn ceiling(data: &Data, fit: &Fit, paths: &[Path]) -> Result<Vec<DVector<f64>>, DynamicsError> {
     let rest = data.facts.rest(&fit.point.globals, &fit.hypothesis);
     let latent = columns_of(paths, data.quantity, &basis(data, rest), Acting::Torque);

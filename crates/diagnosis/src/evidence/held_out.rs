@@ -1,4 +1,4 @@
-//! How well a hypothesis predicts what it was not fitted to.
+//! Held-out prediction: residuals of a hypothesis on parts of the records that it was not fitted to.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Fit, Point};
@@ -10,21 +10,22 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Residuals on parts not fitted.
+/// Residuals on held-out parts.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HeldOut {
-    /// By segment, in the order of the data; only start states were fitted to them.
+    /// Residuals by segment, in the order of the data; only start states were fitted to them.
     pub(crate) residuals: Vec<DVector<f64>>,
-    /// Start values fitted by segment.
+    /// Number of start values fitted per segment.
     pub(crate) starts: usize,
-    /// By segment too, where nothing at all was fitted to the parts held out, not even their start states: what goes on
-    /// from the parts that were. These are segments, or blocks of them where there are few. With fitted start states, on the
-    /// scale that residuals have before these are fitted, where a record begins and where segments are not joined.
+    /// Residuals by segment of predictions that continue from the fitted parts: nothing is fitted to the
+    /// held-out parts, not even start states. The parts are segments, or blocks of samples if there are few
+    /// segments. In the first part of each shooting interval, and if segments are not joined, these are the
+    /// residuals with fitted start states, scaled up for the degrees of freedom that those take.
     pub(crate) continued: Vec<DVector<f64>>,
 }
 
 impl HeldOut {
-    /// Mean square over all segments, each weighed by its samples.
+    /// Returns the mean square over all segments, weighted by their samples.
     pub(crate) fn mean_square(&self) -> f64 {
         mean_square(&self.residuals, self.starts)
     }
@@ -36,17 +37,17 @@ fn mean_square(residuals: &[DVector<f64>], starts: usize) -> f64 {
     squares / freedom.max(1.0)
 }
 
-/// Parts of the records that take turns at being held out, at least: a law learned from one half of a swing that dies
-/// away would have to foretell amplitudes that it never saw.
+/// Fewest parts of the records that take turns at being held out. With fewer, a law learned from one half of
+/// a decaying swing would have to predict amplitudes that it never saw.
 const FEWEST: usize = 8;
 
-/// Periods in a block, at least, and not a multiple of a half: a block is not always the same side of the swing.
+/// Fewest periods in a block. Not a multiple of a half, so that blocks fall on different sides of the swing.
 const BLOCK: f64 = 0.75;
 
-/// Turns in which blocks are held out.
+/// Number of turns in which blocks are held out.
 const TURNS: usize = 4;
 
-/// A fit on some horizon, and the same on the segments as they were cut.
+/// Fit on a shooting interval, and the same on the unjoined segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Both<'a> {
     pub(crate) longer: &'a Data,
@@ -56,7 +57,8 @@ pub(crate) struct Both<'a> {
 }
 
 impl Both<'_> {
-    /// Fits the parts that `train` names, on the longer horizon. Gives the numbers of the segments that were left too.
+    /// Fits the parts that `train` selects, on the longer shooting interval. Also returns the indices of the
+    /// remaining segments.
     fn learned(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
@@ -68,7 +70,8 @@ impl Both<'_> {
         Ok((fit(&masked, &self.followed.hypothesis, point, moving, Stopping::HELD_OUT)?, numbers))
     }
 
-    /// Residuals of the segments that `train` does not name, only start states fitted to them.
+    /// Returns the residuals of the segments that `train` does not select, with only start states fitted to
+    /// them.
     fn scored(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
@@ -84,8 +87,9 @@ impl Both<'_> {
         Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?.residuals)
     }
 
-    /// Residuals of the parts that neither `train` names nor a record begins with, with their numbers, nothing fitted to them.
-    /// The first part is always among those fitted: going back to it would be another question than going on.
+    /// Returns the residuals, with their indices, of the parts that `train` does not select and that are not
+    /// the first of a joined segment; nothing is fitted to them. The first part is always fitted: predicting
+    /// backward to it would be another question than continuing.
     fn continued(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
@@ -106,14 +110,15 @@ impl Both<'_> {
         Ok(parts.filter(|(index, _)| !train(*index)).collect())
     }
 
-    /// For every sample in which turn it is held out, where the segments are too few to take turns.
+    /// Returns the turn in which each sample is held out, if there are too few segments to take turns; `None`
+    /// otherwise.
     fn turns(&self) -> Option<Vec<Vec<usize>>> {
         if self.segments.segments.len() >= FEWEST {
             return None;
         }
         let period = TAU / self.longer.facts.frequency;
         let spans = || self.longer.segments.iter().map(Segment::span);
-        // Every segment has blocks of all turns: its start state follows from the others.
+        // Every segment has blocks of all turns, so that the other blocks determine its start state.
         let shortest = spans().fold(f64::INFINITY, f64::min) / TURNS as f64;
         let length = (spans().sum::<f64>() / FEWEST as f64).min(shortest).max(BLOCK * period);
         let of = |segment: &Segment| {
@@ -124,7 +129,7 @@ impl Both<'_> {
         Some(self.longer.segments.iter().map(of).collect())
     }
 
-    /// Residuals of the samples that are held out in each turn; what was fitted goes on into them.
+    /// Returns the residuals of the samples held out in each turn; the fitted motion continues into them.
     fn by_turns(&self, turns: &[Vec<usize>], moving: Moving) -> Result<Vec<DVector<f64>>, DynamicsError> {
         let turn_of = |segment: usize, sample: usize| turns.get(segment).and_then(|own| own.get(sample));
         let learned: Vec<Vec<DVector<f64>>> = (0..TURNS)
@@ -139,7 +144,7 @@ impl Both<'_> {
         let held_out = |segment: usize, sample: usize| {
             // Every sample has a turn.
             let turn = turn_of(segment, sample).copied().unwrap_or_default();
-            // Every turn has learned from all segments.
+            // Every turn has a fit of all segments.
             learned.get(turn).and_then(|own| own.get(segment)?.get(sample)).copied().unwrap_or_default()
         };
         let lengths = self.longer.segments.iter().map(|segment| segment.times.len()).enumerate();
@@ -149,8 +154,9 @@ impl Both<'_> {
         Ok(self.longer.by_part(&all))
     }
 
-    /// Interleaved segments, both ways: fitted to the even ones and scored on the odd ones, and the other way round.
-    /// With `Moving::Starts` no coefficient is fitted at all.
+    /// Returns residuals on interleaved segments: fitted to the even ones and scored on the odd ones, and the
+    /// other way round. With few segments, blocks of samples are held out in turns instead. With
+    /// [`Moving::Starts`] no coefficient is fitted.
     pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
         if let Some(turns) = self.turns() {
             let residuals = self.by_turns(&turns, moving)?;
@@ -180,7 +186,7 @@ impl Both<'_> {
         Ok(HeldOut { residuals, starts, continued })
     }
 
-    /// Fitted to the first two thirds of the segments, scored on the last third: mean square.
+    /// Returns the mean square error on the last third of the segments, fitted to the first two thirds.
     pub(crate) fn last_third(&self, moving: Moving) -> Result<f64, DynamicsError> {
         let count = self.segments.segments.len();
         let first = count.saturating_sub((count / 3).max(1));
@@ -197,7 +203,8 @@ mod tests {
     use dynamics::{Active, Nominal, System};
     use record::{Clock, ClockChoice};
 
-    /// Seven swings whose amplitude falls to a third: one segment and a bit, of which no half could foretell the other.
+    /// Seven swings whose amplitude falls to a third: little more than one segment, and neither half can
+    /// predict the other.
     #[test]
     fn a_short_swing_is_judged_by_blocks() {
         let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();

@@ -1,7 +1,7 @@
 //! Evidence for every class of effects, by replacement.
 //!
-//! A class is as well supported as the best set with it is over the best one without it, when everything else may take its
-//! place. [`crate::evidence::weighed_sets`] tells what sets are weighed by.
+//! The evidence for a class is that of the best set with it, minus that of the best set without it, in which
+//! all other effects may take its place. [`crate::evidence::weighed_sets`] defines the weights of the sets.
 
 use crate::answer::{ClassEvidence, EffectClass, Kind};
 use crate::data::segments::Data;
@@ -23,16 +23,18 @@ use crate::search::proposals::proposal;
 use dynamics::DynamicsError;
 use seed::Seed;
 
-/// Sets that are asked for what they predict: the best, and the best of plain laws alone.
+/// Numbers of sets whose held-out predictions are computed: the best sets, and the best sets of plain laws
+/// alone.
 const BEST: usize = 5;
 const PLAIN: usize = 2;
 
-/// The sets that are asked for what they predict: the best, the best of plain laws alone, the best where nothing is left, and
-/// for each class of the first one the best without it, and for each class of any the best with it.
+/// Returns the sets whose held-out predictions are computed: the best, the best of plain laws alone, the best
+/// if nothing is left, for each class of the best set the best one without it, and for each class of any set
+/// the best one with it.
 pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let named = || weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty());
     let first: Vec<Candidate> =
-        // Where nothing is named the best set is empty.
+        // If nothing is named, the best set is empty.
         named().next().map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
     let without =
         first.iter().filter_map(|own| named().find(|w| w.fit.hypothesis.lacks(own.evidence_class())));
@@ -50,46 +52,48 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     asked
 }
 
-/// Probability that something is left beside a set: certain where its error, or that on the parts which were held out, is
-/// above the white noise, whatever the spectrum of that.
+/// Returns the probability that something is left beside a set. It is 1 if the set's error, or its held-out
+/// error `held_out`, exceeds the white noise, whatever its spectrum.
 fn left_over(data: &Data, set: &Fit, held_out: f64) -> Result<f64, DynamicsError> {
     let noise = floor::floor(data, &set.residuals).interval_95[1];
     let is_white = (set.squares / set.freedom()).sqrt() <= WHITE * noise && held_out <= PREDICTED * noise;
     Ok(if is_white { acts(unexplained(data, set)?.evidence) } else { 1.0 })
 }
 
-/// Whether an effect is one of a class.
+/// Returns `true` if an effect counts as one of a class.
 fn is_of(own: Candidate, class: &str) -> bool {
     own.counts() && own.evidence_class().id() == class
 }
 
-/// Sets weighed by what they leave.
+/// Sets weighed by their residuals, and the records that they were fitted to.
 pub(crate) struct Inclusion<'a> {
     pub(crate) sets: WeighedSets<'a>,
     records: Records<'a>,
 }
 
-/// Error over the upper end of the white noise's interval up to which a residual counts as white.
+/// Largest error of a residual that counts as white, relative to the upper end of the white noise's interval.
 const WHITE: f64 = 1.05;
 
-/// The same on held-out parts, where coefficients are not quite those of the other parts.
+/// The same for held-out parts, where the coefficients differ a little from those of the other parts.
 const PREDICTED: f64 = 1.2;
 
-/// Draws of segments for a class's stability.
+/// Number of draws of segments for the stability of a class.
 const DRAWS: usize = 200;
 
-/// Probability of a member, given its class, from which on it is told; and the same for its absence.
+/// Probability of a kind, given its class, from which on the kind counts as identified; likewise for its
+/// absence.
 const TOLD: f64 = 0.9;
 
-/// Log likelihood by which a kind has to explain more than another to be told from it: half the square of the distance at which
-/// either is mistaken for the other in one of twenty records.
+/// Difference in log likelihood by which a kind has to explain more than another to be distinguished from it:
+/// half the square of the distance at which either is mistaken for the other in one of twenty records.
 const DISTINCT: f64 = 0.5 * DISTINCT_DISTANCE * DISTINCT_DISTANCE;
 
 impl<'a> Inclusion<'a> {
-    /// Weighs what was predicted of the segments that a shooting interval's data were cut into.
+    /// Weighs the sets by their residuals: by those of the fitted samples, or, if something is probably left
+    /// beside the best set, by the held-out ones.
     ///
     /// # Errors
-    /// What the dynamics refuse.
+    /// Any [`DynamicsError`] of the simulation.
     pub(crate) fn of<'b>(
         records: Records<'a>,
         predictions: &'b Predictions<'a>,
@@ -103,7 +107,7 @@ impl<'a> Inclusion<'a> {
         Ok(Self { sets: sets.priced(&records, doubt), records })
     }
 
-    /// Every class that any of the sets has, the best supported first, with its probability; shares of the gap are left to others.
+    /// Returns every class that any of the sets has, with its probability. `gap_share` is filled in later.
     pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
         let members = self.sets.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
         let (ids, mut rows): (Vec<EvidenceClass>, Vec<EffectClass>) = EvidenceClass::among(members)
@@ -137,14 +141,16 @@ impl<'a> Inclusion<'a> {
         rows
     }
 
-    /// Held-out error of the best set over that of the recalibrated simulator; no number where one of them is missing.
+    /// Returns the held-out error of the best set over that of the recalibrated simulator; NaN if either is
+    /// missing.
     fn remaining(&self) -> f64 {
         let bare = self.sets.weighed.iter().position(|w| w.fit.hypothesis.candidates.is_empty());
         let bare = bare.and_then(|place| self.sets.left.get(place));
         self.sets.best().zip(bare).map_or(f64::NAN, |((_, error), bare)| error / bare.error)
     }
 
-    /// Probability that one of two classes acts that take each other's place; none where they do not.
+    /// Returns the probability that at least one of two classes acts, if they can replace each other: the
+    /// best set with either class lacks the other. `None` otherwise.
     fn either(&self, one: EvidenceClass, other: EvidenceClass) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| fit.hypothesis.holds(one))?;
@@ -155,9 +161,9 @@ impl<'a> Inclusion<'a> {
             return None;
         }
         let best = with_one.min(with_other);
-        // Places are those of the weighed sets.
+        // Places are indices of the weighed sets.
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
-        // Places are those of the weighed sets.
+        // Places are indices of the weighed sets.
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let evidence = ClassEvidence { replacement, half_swings: None };
@@ -174,9 +180,9 @@ impl<'a> Inclusion<'a> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let (with, without) =
             (place(&|fit| fit.hypothesis.holds(class))?, place(&|fit| fit.hypothesis.lacks(class))?);
-        // Places are those of the weighed sets.
+        // Places are indices of the weighed sets.
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
-        // Places are those of the weighed sets.
+        // Places are indices of the weighed sets.
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         Some(EffectClass {
             id: class.id(),
@@ -195,22 +201,23 @@ impl<'a> Inclusion<'a> {
         })
     }
 
-    /// The best set of effects of some classes only.
+    /// Returns the best set whose effects all belong to the given classes.
     pub(crate) fn within(&self, classes: &[&str]) -> Option<&Weighed<'a>> {
         let is_one = |own: &Candidate| !own.counts() || classes.contains(&own.evidence_class().id());
         self.sets.weighed.iter().find(|w| w.fit.hypothesis.candidates.iter().all(is_one))
     }
 
-    /// A fit of the effects of some classes, all of them, where no set is known that has these and no others: begun at the
-    /// best set that has most of them, without its other members. Where that lacks a class too, it gets the members from the
-    /// best set with the class.
+    /// Fits a set with effects of all the given classes and of no others; `None` if the best set within these
+    /// classes already has all of them, if the fit fails or if one of its members vanishes. The fit starts
+    /// from the best set with most of the classes, without its other members. Members of a missing class come
+    /// from the best set that has the class.
     pub(crate) fn completed(&self, data: &Data, classes: &[&str]) -> Option<Fit> {
         let has = |fit: &Fit, id: &str| fit.hypothesis.candidates.iter().any(|own| is_of(*own, id));
         let count = |fit: &Fit| classes.iter().filter(|id| has(fit, id)).count();
         if self.within(classes).is_some_and(|own| count(own.fit) == classes.len()) {
             return None;
         }
-        // The first of the best.
+        // The best of those with as many classes.
         let base = self.sets.weighed.iter().rev().max_by_key(|w| count(w.fit))?.fit;
         let mut added: Vec<(Candidate, Vec<f64>)> = Vec::new();
         for id in classes.iter().filter(|id| !has(base, id)) {
@@ -227,12 +234,13 @@ impl<'a> Inclusion<'a> {
         (!vanished(data, &ended)).then_some(ended)
     }
 
-    /// Log evidence of a further set, on the scale of the others.
+    /// Returns the log evidence of a further set, on the scale of the others.
     pub(crate) fn evidence(&self, set: &Predicted<'_>) -> f64 {
         self.sets.evidence(&self.records, set)
     }
 
-    /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.
+    /// Returns the members of a class with their probabilities, given the class: the weight of the sets that
+    /// have the member over that of all sets with the class. Several members can act at once.
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
         let with = || self.sets.weighed.iter().filter(|w| w.fit.hypothesis.holds(class));
         // Without a set there is no member either.
@@ -253,14 +261,14 @@ impl<'a> Inclusion<'a> {
         members
     }
 
-    /// Probability that the system has a candidate, given its class.
+    /// Returns the probability that the system has a candidate, given its class.
     pub(crate) fn membership(&self, candidate: Candidate) -> f64 {
         let members = self.memberships(candidate.evidence_class());
-        // What is in no set has no share.
+        // A candidate of no set has probability 0.
         members.iter().find(|(own, _)| *own == candidate).map_or(0.0, |(_, share)| *share)
     }
 
-    /// The same with shares that add up to 1.
+    /// Returns the members of a class with shares that add up to 1, largest first.
     fn kinds(&self, class: EvidenceClass) -> Vec<Kind> {
         let members = self.memberships(class);
         let total: f64 = members.iter().map(|(_, share)| share).sum();
@@ -270,8 +278,9 @@ impl<'a> Inclusion<'a> {
         kinds
     }
 
-    /// Whether these data tell the kind of a class: every member either acts for certain, or not at all, and no other one leaves
-    /// nearly as little in the likeliest one's place. What a kind pays for its parameters tells nothing.
+    /// Returns `true` if these data identify the kind of a class: every member either acts or does not act
+    /// with certainty, and no other member explains nearly as much in the place of the likeliest one. The
+    /// prices of parameters do not count here.
     fn is_kind_told(&self, class: EvidenceClass) -> bool {
         let members = self.memberships(class);
         if !members.iter().all(|(_, share)| *share >= TOLD || *share <= 1.0 - TOLD) {
@@ -290,7 +299,7 @@ impl<'a> Inclusion<'a> {
             .all(|own| with - own >= DISTINCT)
     }
 
-    /// Part of the draws of segments in which the best set has the class.
+    /// Returns the share of the draws of segments in which the best set has the class.
     fn stability(&self, class: EvidenceClass, seed: &Seed) -> f64 {
         // Without sets nothing is drawn.
         let segments = self.sets.left.first().map_or(0, |left| left.powers.len()).max(1);
@@ -312,11 +321,11 @@ impl<'a> Inclusion<'a> {
     }
 }
 
-/// Share of a class below which a member is not listed.
+/// Share of a class below which a kind is not listed.
 const LEAST_SHARE: f64 = 0.005;
 
-/// What half swings say of a class. They are a witness of losses; what bends a duration or moves a center is often
-/// something else (training banks).
+/// Returns the evidence of half swings for a class, in nats. Only losses count: changes of the duration or
+/// the center often have other causes (training banks).
 fn shown(witness: &Witness, class: EvidenceClass) -> Option<f64> {
     match class {
         EvidenceClass::Friction => witness.friction,

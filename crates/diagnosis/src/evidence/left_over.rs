@@ -1,15 +1,15 @@
-//! Whether anything is left that no named effect explains.
+//! Test for a left-over that no named effect explains.
 //!
-//! Two views of the residual of the best named set, both in units of the noise around them:
+//! It examines the residual of the best named set in two ways, both relative to the noise around it:
 //!
-//! - what a smooth function of position, velocity, time and the input would still take away, as a torque or in the sensor, above
-//!   what is slower than any motion;
-//! - how far the spectrum of the residual stands out in a band about a harmonic of the swing, or midway between two,
-//!   above the bands beside it. That needs no basis, and sees torques and sensors alike.
+//! - the decrease by a smooth function of position, velocity, time and the input, as a torque or in the
+//!   sensor, above the frequencies of slow drifts;
+//! - the excess of the residual's spectrum, in a band about a harmonic of the swing or midway between two,
+//!   over the neighboring bands. This needs no basis, and detects torques and sensor effects alike.
 //!
-//! Either compares two variances: were nothing left, both would be the noise's. The evidence is the log
-//! likelihood ratio of two Gaussian variances against a common one, so that a noise of any color, if it is
-//! smooth over a few bands, counts for nothing, and few samples say little.
+//! Either compares two variances, which are both the noise's if nothing is left. The evidence is the log
+//! likelihood ratio of two Gaussian variances against a common one. So noise of any color counts for nothing
+//! if its spectrum is smooth over a few bands, and few samples give little evidence.
 
 use crate::data::scales::below_images;
 use crate::data::segments::{Data, PERIODS, Segment};
@@ -25,39 +25,40 @@ use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
 
-/// What is left without a name.
+/// Left-over without a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unexplained {
-    /// Log evidence that anything is.
+    /// Log evidence that there is one, in nats.
     pub(crate) evidence: f64,
-    /// Squares of the residual beyond the noise.
+    /// Sum of squares of the residual beyond the noise.
     pub(crate) squares: f64,
 }
 
-/// Harmonics of the swing that are looked at.
+/// Number of harmonics of the swing that are examined.
 const HARMONICS: usize = 12;
 
-/// Place of the band about the swing's own frequency: the first one lies about half of it.
+/// Index of the band about the swing's own frequency; the first band lies about half of that.
 const SWING: usize = 1;
 
-/// Bins of a segment's spectrum on either side of a band's middle that belong to it.
+/// Number of bins of a segment's spectrum on either side of a band's center that belong to it.
 const BESIDE: i32 = 1;
 
-/// How often is looked: in every band, with a free torque and with a free sensor. The evidence is the largest of all.
+/// Number of comparisons: every band, a free torque and a free sensor. The evidence is the largest of all.
 const LOOKS: f64 = 2.0 + 2.0 * HARMONICS as f64;
 
-/// Independent squares in a band of three neighboring bins under a Hann window, whose amplitudes have the
-/// correlations 2/3 and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
+/// Number of independent squares in a band of three neighboring bins under a Hann window, whose amplitudes
+/// have the correlations 2/3 and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
 const WORTH: f64 = 108.0 / 29.0;
 
-/// Part of the largest eigenvalue below which a direction of the basis is one of the others once more.
+/// Share of the largest eigenvalue below which a direction of the basis counts as dependent on the others.
 const DEPENDENT: f64 = 1e-8;
 
-/// Part of a column that its drifts leave at least, or it is one.
+/// Smallest share of a column's length that has to remain without its drifts; a column with less counts as a
+/// drift itself.
 const DRIFTS: f64 = 0.1;
 
-/// Log likelihood ratio of two variances against a common one: `first` from so many squares in the mean, `second` from
-/// others; 0 where the first is not the larger.
+/// Returns the log likelihood ratio of two variances against a common one: `first` is a mean of `count`
+/// independent squares, `second` of `others`. 0 unless the first is the larger.
 fn larger(first: f64, count: f64, second: f64, others: f64) -> f64 {
     if !(first > second && second > 0.0 && count > 0.0 && others > 0.0) {
         return 0.0;
@@ -66,7 +67,8 @@ fn larger(first: f64, count: f64, second: f64, others: f64) -> f64 {
     0.5 * ((count + others) * common.ln() - count * first.ln() - others * second.ln())
 }
 
-/// A band of the spectrum: the mean of its periodogram, how many independent squares that is, and the bins in it.
+/// Band of the spectrum: the sum of its periodogram, the number of bins, and the number of independent
+/// squares.
 #[derive(Debug, Clone, Copy, Default)]
 struct Band {
     power: f64,
@@ -88,7 +90,8 @@ impl Band {
     }
 }
 
-/// Periodogram of a piece under a Hann window at an angular frequency; its mean over white noise is the variance.
+/// Returns the periodogram of a piece under a Hann window at an angular frequency. Its mean over white noise
+/// is the variance.
 fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0.0 };
     let length = (last - first).max(f64::MIN_POSITIVE);
@@ -103,11 +106,11 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     if weight > 0.0 { (real * real + imaginary * imaginary) / weight } else { 0.0 }
 }
 
-/// Stretches of the residual that are long enough to tell a harmonic from its neighbors: the segments as they were cut or,
-/// where these are too short for that, the records.
+/// Returns stretches of the residual, with their times, that are long enough to resolve a harmonic from its
+/// neighbors: the unjoined segments or, if these are too short, the records.
 fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let is_long = |times: &[f64]| {
-        // Without times no time passes.
+        // Without samples the span is zero.
         let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
         span * data.facts.frequency >= 0.8 * TAU * PERIODS
     };
@@ -127,7 +130,7 @@ fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>
             }
         }
     }
-    // A stretch cut short has no bins between the harmonics.
+    // A shorter stretch has no bins between the harmonics.
     cut.retain(|(times, _)| is_long(times));
     if cut.is_empty() {
         records.retain(|(times, _)| is_long(times));
@@ -136,12 +139,13 @@ fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>
     cut
 }
 
-/// Bands about every half harmonic, from half the swing's frequency up, summed over the stretches.
+/// Returns the bands about every half harmonic, from half the swing's frequency up, summed over the
+/// stretches.
 fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     let mut bands = vec![Band::default(); 2 * HARMONICS];
     let highest = below_images(data.interval());
     for (times, values) in stretches(data, residuals) {
-        // Without times no time passes.
+        // Without samples the span is zero.
         let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
         let bin = TAU / length;
         for (at, band) in bands.iter_mut().enumerate() {
@@ -159,17 +163,18 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     bands
 }
 
-/// What stands out of the spectrum, and the noise about the swing's own frequency: its variance and the
-/// squares that it is taken from.
+/// Returns the excess of the spectrum, and the noise about the swing's own frequency: its variance and the
+/// number of squares that it is estimated from.
 fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
-    // Where no band stands out nothing is outstanding.
+    // A missing band has no power.
     let at = |index: Option<usize>| index.and_then(|i| bands.get(i)).copied().unwrap_or_default();
     let mut evidence: f64 = 0.0;
     let mut squares = 0.0;
-    // Start states take noise out of the swing's own band, which is therefore nobody's measure.
+    // Start states absorb noise in the swing's own band, so no other band is compared with it.
     let lower = |index: usize| at(if index == SWING + 1 { Some(SWING - 1) } else { index.checked_sub(1) });
     let upper = |index: usize| at(Some(if index + 1 == SWING { SWING + 1 } else { index + 1 }));
-    // Below the lowest band there is no other: a red noise stands out there as much as a slow torque.
+    // The lowest band is skipped since it has no neighbor below: red noise would stand out there as much as a
+    // slow torque.
     for (index, band) in bands.iter().enumerate().skip(1) {
         let beside = lower(index).with(upper(index));
         let own = larger(band.mean(), band.worth, beside.mean(), beside.worth);
@@ -182,7 +187,8 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
 }
 
-/// Angular frequency below which nothing moves for long: the swing's, or how often a slower input has the record cross its mean.
+/// Returns the lowest angular frequency of a sustained motion: the swing's or, in driven data, that with
+/// which the records cross their mean, if it is lower.
 fn slowest(data: &Data) -> f64 {
     let crossings = |segment: &Segment| {
         let center = mean(&segment.values);
@@ -197,8 +203,9 @@ fn slowest(data: &Data) -> f64 {
     data.facts.frequency.min(PI * count / span)
 }
 
-/// Takes what is slower than any motion out of samples of all segments: noise that grows the slower it is would pass there for a slow
-/// torque, or for the middle that a bent spring shifts, and nothing beside it tells how large it is.
+/// Removes from samples of all segments everything slower than any motion. Red noise would otherwise pass for
+/// a slow torque, or for the center that an asymmetric spring shifts, and no neighboring band shows how large
+/// it is.
 fn without_drifts(data: &Data, period: f64, values: &mut [f64]) {
     let mut rest = values;
     for segment in &data.segments {
@@ -212,8 +219,8 @@ fn without_drifts(data: &Data, period: f64, values: &mut [f64]) {
     }
 }
 
-/// What columns would take away of a residual without its drifts: squares and how many independent directions they lie in.
-/// `filter` takes the drifts out of a column too.
+/// Returns the decrease of a residual's sum of squares by a fit of columns, without drifts, and the number of
+/// independent directions of the columns. `filter` removes the drifts from a column too.
 fn taken(
     residual: &DVector<f64>,
     projection: &Projection,
@@ -246,13 +253,13 @@ fn taken(
     (squares, count)
 }
 
-/// What a fit leaves without a name.
+/// Returns the left-over of a fit.
 ///
 /// # Errors
-/// What the dynamics refuse.
+/// Any [`DynamicsError`] of the simulation.
 pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, DynamicsError> {
     let (spectrum, around) = outstanding(&bands(data, &fit.residuals));
-    // Where the spectrum has nothing beside the swing's band, all of the residual is the noise.
+    // If the spectrum has no bands beside the swing's, the whole residual counts as noise.
     let whole =
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
     let noise = if around.worth > 0.0 { around } else { whole };
@@ -287,19 +294,19 @@ mod tests {
     fn equal_variances_say_nothing_and_unequal_ones_much() {
         assert_eq!(larger(1.0, 50.0, 1.0, 90.0), 0.0);
         assert_eq!(larger(0.5, 50.0, 1.0, 90.0), 0.0);
-        // By hand: ½(140·ln((50·4 + 90)/140) − 50·ln 4).
+        // Calculated by hand: ½(140·ln((50·4 + 90)/140) − 50·ln 4).
         let expected = 0.5 * (140.0 * (290.0_f64 / 140.0).ln() - 50.0 * 4.0_f64.ln());
         assert!((larger(4.0, 50.0, 1.0, 90.0) - expected).abs() < 1e-12);
     }
 
-    /// In many segments, each with a start state fitted to it, the swing's band is by a third too quiet.
+    /// In many segments, each with a fitted start state, the swing's band is too quiet by a third.
     #[test]
     fn a_quiet_swing_makes_no_neighbor_loud() {
         let band = |power: f64| Band { power: 1500.0 * power, bins: 1500.0, worth: 1867.0 };
         let mut spectrum = vec![band(1.0); 2 * HARMONICS];
         spectrum[SWING] = band(0.65);
         assert_eq!(outstanding(&spectrum).0.evidence, 0.0);
-        // What stands out at the swing's own frequency is still seen there.
+        // An excess at the swing's own frequency is still detected there.
         spectrum[SWING] = band(1.3);
         assert!(outstanding(&spectrum).0.evidence > 5.0);
     }
@@ -319,7 +326,7 @@ mod tests {
         let variance =
             crate::noise::statistics::mean(&means.iter().map(|m| (m - mean).powi(2)).collect::<Vec<_>>());
         assert!((mean - 1.0).abs() < 0.05, "{mean}");
-        // A mean of n squares of unit Gaussians has the variance 2/n.
+        // The mean of n squares of unit Gaussians has the variance 2/n.
         assert!((2.0 / variance / WORTH - 1.0).abs() < 0.15, "{}", 2.0 / variance);
     }
 }

@@ -1,51 +1,54 @@
-//! How likely sets of effects make a record, beside what none of them explains.
+//! Likelihood of residuals, with allowance for a discrepancy that no set of effects explains.
 //!
-//! Whittle's likelihood by bands about the swing's half harmonics: the power P that a set leaves in a band of w
-//! independent squares makes −w/2·(ln S + P/S) of the log likelihood, where S is the noise there. That is the sensor's
-//! variance σ², and a discrepancy of unknown size beside it: the sum where P is below σ², and P itself above.
+//! This is Whittle's likelihood by bands about the swing's half harmonics: the power P that a set leaves in a
+//! band of w independent squares adds −w/2·(ln S + P/S) to the log likelihood, where S is the variance there:
+//! the sensor's variance σ² plus that of a discrepancy of unknown size. S is σ² if P is below σ², and P
+//! otherwise.
 //!
-//! So a law speaks with its full weight wherever nothing but the sensor's noise is left. Where something is left that no
-//! law explains, only the ratio of what two sets leave counts, and a left-over that goes on from swing to swing is worth a
-//! few dozen numbers, however many samples show it. A band's w is less than its number of bins where few segments hold
-//! most of the power.
+//! So a law has its full weight wherever only the sensor's noise is left. Where something is left that no law
+//! explains, only the ratio of the powers that two sets leave counts, and a left-over that persists from
+//! swing to swing is worth a few dozen numbers, however many samples show it. A band's w is less than its
+//! number of bins if few segments hold most of the power.
 //!
 //! # Reference
-//! Ahmed, Natarajan, Rao, IEEE Transactions on Computers C-23 (1974) 90 (the cosine transform). Whittle, Arkiv för Matematik 2 (1953) 423. Kennedy, O'Hagan, Journal of the Royal Statistical Society B 63 (2001) 425
-//! (the discrepancy). Miller, Dunson, Journal of the American Statistical Association 114 (2019) 1113 (why a likelihood
-//! that takes a left-over for noise is too sure).
+//! Ahmed, Natarajan, Rao, IEEE Transactions on Computers C-23 (1974) 90 (the cosine transform). Whittle,
+//! Arkiv för Matematik 2 (1953) 423. Kennedy, O'Hagan, Journal of the Royal Statistical Society B 63 (2001)
+//! 425 (the discrepancy). Miller, Dunson, Journal of the American Statistical Association 114 (2019) 1113
+//! (why a likelihood that takes a left-over for noise is too certain).
 
 use crate::data::scales::below_images;
 use crate::data::segments::Data;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Bands about every half harmonic of the swing, from its mean value up.
+/// Number of bands about the swing's half harmonics, from the mean value up.
 pub(crate) const BANDS: usize = 25;
 
-/// Independent squares in a bin under a Hann window, with its neighbors in the same band: a third of those in three, whose
-/// amplitudes have the correlations 2/3 and 1/6.
+/// Number of independent squares in a bin under a Hann window, with its neighbors in the same band: a third
+/// of those in three bins, whose amplitudes have the correlations 2/3 and 1/6.
 const TAPERED_WORTH: f64 = 36.0 / 29.0;
 
-/// How a segment is looked at.
+/// Transform of a segment into its spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum View {
-    /// Every sample counts as much as any other, those at a segment's ends too: the cosine transform. A line at one frequency
-    /// falls off by the fourth power beside it.
+    /// Cosine transform: every sample has the same weight, those at the ends of a segment too. A line at one
+    /// frequency falls off by the fourth power beside it.
     Whole,
-    /// Under a Hann window, where a line that is far above the noise leaves the other bands alone. What lies at a segment's ends
-    /// hardly counts.
+    /// Fourier transform under a Hann window: a line far above the noise does not leak into other bands.
+    /// Samples at the ends of a segment hardly count.
     Tapered,
 }
 
-/// The bins of one segment, as it was cut.
+/// Bins of one unjoined segment.
 #[derive(Debug, Clone)]
 struct Bins {
-    /// The waves of each bin, so many rows of them, whose squares together have white noise's variance for a mean.
+    /// Waves of each bin, `rows` of them. The sum of their squared products with white noise has the noise's
+    /// variance as mean.
     waves: DMatrix<f64>,
     rows: usize,
     /// Band of each bin.
     bands: Vec<usize>,
-    /// Bins by band.
+    /// Number of bins by band.
     counts: [f64; BANDS],
 }
 
@@ -53,14 +56,14 @@ struct Bins {
 #[derive(Debug, Clone)]
 pub(crate) struct Likelihood {
     bins: Vec<Bins>,
-    /// Independent squares by band.
+    /// Number of independent squares by band.
     worth: Vec<f64>,
     /// Variance of the sensor's noise.
     noise: f64,
 }
 
 impl View {
-    /// Independent squares in a bin.
+    /// Returns the number of independent squares in a bin.
     fn worth(self) -> f64 {
         match self {
             Self::Whole => 1.0,
@@ -68,7 +71,8 @@ impl View {
         }
     }
 
-    /// Weights of samples at times from a segment's first one on, so that white noise has its variance in a wave's square.
+    /// Returns the weights of samples, normalized so that the squared wave of white noise has its variance as
+    /// mean. `after` are times since the segment's first sample.
     fn weights(self, after: &[f64], length: f64, interval: f64) -> Vec<f64> {
         let (window, squares): (Vec<f64>, f64) = match self {
             Self::Whole => (vec![std::f64::consts::SQRT_2; after.len()], after.len() as f64),
@@ -90,11 +94,13 @@ impl Bins {
         let first = times.first().copied().unwrap_or_default();
         let after: Vec<f64> = times.iter().map(|time| time - first).collect();
         let count = after.len();
-        // As many steps as there are samples: neighboring bins are then alike in every segment.
+        // The length has as many steps as there are samples: neighboring bins are then alike in every
+        // segment.
         let length = after.last().copied().unwrap_or_default() + interval;
         let highest = below_images(interval).min(0.5 * (BANDS as f64 - 0.5) * frequency);
         let weights = view.weights(&after, length, interval);
-        // The cosine transform has a bin every half turn, from the middle of a step on; a window one every turn.
+        // The cosine transform has a bin every half turn, from the middle of a step on; the windowed one has
+        // a bin every turn.
         let (turn, begin, most) = match view {
             View::Whole => (0.5 * TAU, 0.5 * interval, count.saturating_sub(1)),
             View::Tapered => (TAU, 0.0, count / 2),
@@ -104,7 +110,7 @@ impl Bins {
         let mut bands = Vec::with_capacity(most + 1);
         for bin in 0..=most {
             let omega = turn * bin as f64 / length;
-            // A constant has no sine beside its cosine, and all of the power.
+            // The constant has no sine beside its cosine, and all of the power.
             let size = if bin == 0 && view == View::Whole { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
             let along = || weights.iter().zip(&after);
             waves.extend(along().map(|(w, t)| size * w * (omega * (t + begin)).cos()));
@@ -123,7 +129,7 @@ impl Bins {
         Self { waves: DMatrix::from_row_slice(rows * bands.len(), count, &waves), rows, bands, counts }
     }
 
-    /// Sum of the squares by band.
+    /// Returns the sum of squares by band.
     fn powers(&self, residual: &DVector<f64>) -> [f64; BANDS] {
         let mut powers = [0.0; BANDS];
         let values = &self.waves * residual;
@@ -137,14 +143,15 @@ impl Bins {
 }
 
 impl Likelihood {
-    /// Of residuals by segment as these were cut. `closest` is what the closest set leaves there: it says how many
-    /// independent numbers a band is worth. `noise` is the standard deviation of the sensor's noise.
+    /// Creates the likelihood of residuals by unjoined segment. `closest` is the residual of the closest set:
+    /// it determines the number of independent squares of a band. `noise` is the standard deviation of the
+    /// sensor's noise.
     pub(crate) fn of(data: &Data, closest: &[DVector<f64>], noise: f64, view: View) -> Self {
         let mut bins = Vec::new();
         let interval = data.interval();
         for segment in &data.segments {
             for part in segment.part_ranges() {
-                // Ranges of parts are within their segment.
+                // Ranges of parts lie within their segment.
                 let times = segment.times.get(part).unwrap_or_default();
                 bins.push(Bins::new(times, data.facts.frequency, interval, view));
             }
@@ -155,18 +162,18 @@ impl Likelihood {
         own
     }
 
-    /// Power of residuals by segment and band.
+    /// Returns the power of residuals by segment and band.
     pub(crate) fn powers(&self, residuals: &[DVector<f64>]) -> Vec<[f64; BANDS]> {
         self.bins.iter().zip(residuals).map(|(bins, residual)| bins.powers(residual)).collect()
     }
 
-    /// Log likelihood of residuals, up to a constant common to all.
+    /// Returns the log likelihood of residuals, up to a constant common to all.
     pub(crate) fn log(&self, residuals: &[DVector<f64>]) -> f64 {
         let all: Vec<usize> = (0..self.bins.len()).collect();
         self.log_of(&self.powers(residuals), &all)
     }
 
-    /// The same of the segments that are `drawn`, from the [`Self::powers`] of all.
+    /// Returns the log likelihood of the `drawn` segments, from the [`Self::powers`] of all.
     pub(crate) fn log_of(&self, by_segment: &[[f64; BANDS]], drawn: &[usize]) -> f64 {
         let mut powers = [0.0; BANDS];
         let mut counts = [0.0; BANDS];
@@ -189,21 +196,22 @@ impl Likelihood {
         powers.iter().zip(&counts).zip(&self.worth).map(of).sum()
     }
 
-    /// Independent numbers in the record.
+    /// Returns the number of independent squares in the record, at least 2.
     pub(crate) fn worth(&self) -> f64 {
         self.worth.iter().sum::<f64>().max(2.0)
     }
 }
 
-/// Independent squares in a band of all segments: fewer than its bins where few segments hold most of the power, beyond
-/// the scatter that noise of one size has; a bin has `each`. `closest` is the power that the closest set leaves, by segment and band.
+/// Returns the number of independent squares in a band of all segments: fewer than its bins if few segments
+/// hold most of the power, beyond the scatter of stationary noise. A bin has `each` of them. `closest` is the
+/// power that the closest set leaves, by segment and band.
 fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize, each: f64) -> f64 {
     let (mut all, mut square, mut count) = (0.0, 0.0, 0.0);
     for (bins, powers) in bins.iter().zip(closest) {
-        // A band that bins do not reach holds nothing.
+        // A band that no bin reaches has no power.
         let own = bins.counts.get(band).copied().unwrap_or_default();
         if own > 0.0 {
-            // A band that bins do not reach holds nothing.
+            // A band that no bin reaches has no power.
             let power = powers.get(band).copied().unwrap_or_default();
             all += power;
             square += power * power / own / (1.0 + 2.0 / (own * each));
@@ -227,14 +235,14 @@ mod tests {
     use record::{Clock, ClockChoice};
     use seed::Seed;
 
-    /// White noise of unit variance on the segments of a swing.
+    /// Returns white noise of unit variance on the segments of a swing.
     fn noise(lengths: &[usize], seed: u64) -> Vec<DVector<f64>> {
         let mut generator = Seed::new(seed).child("noise").generator();
         let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
         lengths.iter().map(|length| DVector::from_fn(*length, |_, _| draw())).collect()
     }
 
-    /// Eight samples of five standard deviations are a hundred nats, wherever they lie.
+    /// Eight samples of five standard deviations are worth a hundred nats, wherever they lie.
     #[test]
     fn what_lies_at_the_end_of_a_segment_counts() {
         let (data, _) = calibrated_swing();
@@ -266,7 +274,7 @@ mod tests {
         }
     }
 
-    /// Only the first peak of 25 s is beyond the bound.
+    /// Only the first peak of 25 s exceeds the range.
     #[test]
     fn a_sensor_that_clips_the_first_peak_is_named() {
         let nominal = Nominal::new(1.0, 0.08, 110.0, 0.0).unwrap();

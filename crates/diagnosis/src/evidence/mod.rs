@@ -1,4 +1,4 @@
-//! What the fits are evidence of: sets, classes and effects, and what is left over.
+//! Evidence from the fits: for sets, classes and effects, and for a left-over.
 
 pub(crate) mod conclusion;
 pub(crate) mod context;

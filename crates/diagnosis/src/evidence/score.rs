@@ -1,18 +1,18 @@
-//! How well a set of effects is supported by the data.
+//! Score of a fit: how well the data support its set of effects.
 
 use crate::fit::fitted::Fit;
 
-/// Tempered log evidence S = −(N/2τ)·ln(SS/N) − (p/2)·ln(N/τ), up to a constant common to all hypotheses on the same
-/// data.
+/// Returns the tempered log evidence S = −(N/2τ)·ln(SS/N) − (p/2)·ln(N/τ), up to a constant common to all
+/// hypotheses on the same data.
 ///
-/// N samples whose residual has the integrated autocorrelation time τ carry the information of N/τ: white residuals
-/// get full power, a misfit that all hypotheses share is discounted. Start states are the same in number for all
-/// but hypotheses with a second body, whose further ones count among the parameters.
+/// N samples whose residual has the integrated autocorrelation time τ carry the information of N/τ: white
+/// residuals get full weight, a misfit common to all hypotheses is discounted. All hypotheses have the same
+/// number of start states, except those with a second body, whose additional ones count as parameters.
 pub(crate) fn score(fit: &Fit, autocorrelation_time: f64) -> f64 {
     score_with(fit, fit.squares, 0, autocorrelation_time)
 }
 
-/// The [`score`] that a fit would have with so many further parameters and these squares.
+/// Returns the [`score`] of a fit with `further` more parameters and the given sum of squares.
 pub(crate) fn score_with(fit: &Fit, squares: f64, further: usize, autocorrelation_time: f64) -> f64 {
     let samples = fit.samples() as f64;
     let worth = samples / autocorrelation_time;
@@ -20,25 +20,25 @@ pub(crate) fn score_with(fit: &Fit, squares: f64, further: usize, autocorrelatio
     -0.5 * worth * mean.ln() - parameter_price(fit.globals() + further_starts(fit) + further, worth)
 }
 
-/// Start values that a hypothesis has beyond those of every one.
+/// Returns the number of start values that a hypothesis has beyond those common to all.
 pub(crate) fn further_starts(fit: &Fit) -> usize {
     let common = fit.hypothesis.least_start_length();
     fit.point.starts.iter().map(|start| start.len().saturating_sub(common)).sum()
 }
 
-/// What parameters cost beside so many independent numbers: (p/2)·ln of these.
+/// Returns the price of parameters in nats, (p/2)·ln(worth); `worth` is the number of independent samples.
 pub(crate) fn parameter_price(parameters: usize, worth: f64) -> f64 {
     0.5 * parameters as f64 * worth.max(2.0).ln()
 }
 
-/// The squares at which so many samples and parameters have a [`score`].
+/// Returns the sum of squares at which that many samples and parameters have a given [`score`].
 pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorrelation_time: f64) -> f64 {
     let samples = samples as f64;
     let worth = samples / autocorrelation_time;
     samples * (-2.0 * (score + parameter_price(parameters, worth)) / worth).exp()
 }
 
-/// A decaying swing of 1000 samples, and the calibrated simulator fitted to it.
+/// A decaying swing of 1000 samples, and the recalibrated simulator fitted to it.
 #[cfg(test)]
 pub(crate) fn calibrated_swing() -> (crate::data::segments::Data, Fit) {
     use record::{Clock, ClockChoice, Quantity, Record};

@@ -1,9 +1,10 @@
-//! Sets of effects, weighed by what they leave of the records.
+//! Sets of effects weighed by their residuals.
 //!
-//! Where something is left that no law explains, sets are weighed by what they predict of parts that they were not fitted to:
-//! what soaks a left-over up in one part does not come back in another. Such a prediction has the errors of coefficients that
-//! were fitted to half of the records, though, and two sets that leave the same noise can differ by a hundred nats there. So
-//! where nothing is left, sets are weighed by what they leave of the samples they were fitted to, and pay for their parameters.
+//! If something is left that no law explains, sets are weighed by their held-out predictions: an effect that
+//! absorbs a left-over in one part of a record does not predict the next one. But such predictions contain
+//! the errors of coefficients fitted to half of the records, and two sets that leave the same noise can
+//! differ by a hundred nats. So if nothing is left, sets are weighed by the residuals of the samples that
+//! they were fitted to, and pay for their parameters.
 
 use crate::data::segments::Data;
 use crate::evidence::context::Predicted;
@@ -15,38 +16,38 @@ use crate::fit::fitted::Fit;
 use crate::noise::floor;
 use nalgebra::DVector;
 
-/// What sets are weighed by.
+/// Residuals that sets are weighed by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Basis {
-    /// Parts that they were not fitted to.
+    /// Held-out residuals.
     HeldOut,
-    /// The samples that they were fitted to.
+    /// Residuals of the samples that the sets were fitted to.
     Fitted,
 }
 
-/// Records, and what sets are compared with there.
+/// Records, and the simulator that sets are compared with.
 #[derive(Clone, Copy)]
 pub(crate) struct Records<'d> {
-    /// Those that sets were fitted to, and the same cut into segments.
+    /// Data that the sets were fitted to, and the same as unjoined segments.
     pub(crate) data: &'d Data,
     pub(crate) segments: &'d Data,
-    /// The recalibrated simulator.
+    /// Recalibrated simulator.
     pub(crate) bare: &'d Fit,
-    /// Effects that were asked for.
+    /// Number of candidate effects.
     pub(crate) vocabulary: usize,
 }
 
-/// What a set leaves.
+/// Residual power of a set, and the price of the set.
 pub(crate) struct Left {
-    /// Error on held-out parts, in the unit of the records.
+    /// Held-out error, in the unit of the records.
     pub(crate) error: f64,
     /// Power by segment and band.
     pub(crate) powers: Vec<[f64; BANDS]>,
-    /// Log evidence that the set pays for its effects and, where it was fitted, its parameters.
+    /// Price of the set's effects and, for [`Basis::Fitted`], of its parameters, in nats.
     pub(crate) price: f64,
 }
 
-/// Sets with their evidence, best first, and what each leaves.
+/// Sets with their evidence, best first, and the residual of each.
 pub(crate) struct WeighedSets<'a> {
     pub(crate) weighed: Vec<Weighed<'a>>,
     pub(crate) left: Vec<Left>,
@@ -54,12 +55,12 @@ pub(crate) struct WeighedSets<'a> {
     basis: Basis,
     /// Probability that something is left beside the best set.
     pub(crate) left_over: f64,
-    /// Log evidence of the recalibrated simulator, which that of the others is relative to.
+    /// Log evidence of the recalibrated simulator; the evidence of all sets is relative to it.
     bare: f64,
 }
 
 impl Basis {
-    /// What a set leaves, by segment.
+    /// Returns the residuals of a set by segment.
     fn residuals(self, records: &Records<'_>, set: &Fit, held_out: &HeldOut) -> Vec<DVector<f64>> {
         match self {
             Self::HeldOut => held_out.continued.clone(),
@@ -67,7 +68,8 @@ impl Basis {
         }
     }
 
-    /// Where nothing is left there is no line beside the noise.
+    /// Returns the view of the residuals. If nothing is left, no line rises above the noise, so no taper is
+    /// needed.
     fn view(self) -> View {
         match self {
             Self::HeldOut => View::Tapered,
@@ -75,7 +77,7 @@ impl Basis {
         }
     }
 
-    /// What a set pays.
+    /// Returns the price of a set in nats.
     fn price(self, records: &Records<'_>, set: &Fit, worth: f64, left_over: f64) -> f64 {
         let effects = price(records.segments, set, records.vocabulary, left_over);
         let parameters = set.globals().saturating_sub(records.bare.globals()) + further_starts(set);
@@ -87,13 +89,13 @@ impl Basis {
 }
 
 impl<'a> WeighedSets<'a> {
-    /// Weighs sets as if nothing were left; the last of these is the recalibrated simulator.
+    /// Weighs sets as if nothing were left; the last of `sets` is the recalibrated simulator.
     pub(crate) fn of(records: &Records<'_>, sets: &[(&'a Fit, &HeldOut)], basis: Basis) -> Self {
         let residuals: Vec<Vec<DVector<f64>>> =
             sets.iter().map(|(fit, held)| basis.residuals(records, fit, held)).collect();
         let square = |own: &&Vec<DVector<f64>>| own.iter().map(DVector::norm_squared).sum::<f64>();
         let closest = residuals.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
-        // Without sets nothing is left by any.
+        // Without sets there are no residuals.
         let closest = closest.map(Vec::as_slice).unwrap_or_default();
         let noise = floor::floor(records.segments, closest).value;
         let likelihood = Likelihood::of(records.segments, closest, noise, basis.view());
@@ -106,7 +108,7 @@ impl<'a> WeighedSets<'a> {
         Self { weighed, left, likelihood, basis, left_over: 0.0, bare: 0.0 }.priced(records, 0.0)
     }
 
-    /// The same sets with what they pay where something is left with a probability.
+    /// Returns the same sets with their prices for a given probability of a left-over.
     pub(crate) fn priced(self, records: &Records<'_>, left_over: f64) -> Self {
         let Self { weighed, left, likelihood, basis, .. } = self;
         let mut all: Vec<(Weighed<'a>, Left)> = weighed.into_iter().zip(left).collect();
@@ -126,12 +128,12 @@ impl<'a> WeighedSets<'a> {
         Self { weighed, left, likelihood, basis, left_over, bare }
     }
 
-    /// The best set, and its error on held-out parts.
+    /// Returns the best set and its held-out error.
     pub(crate) fn best(&self) -> Option<(&'a Fit, f64)> {
         Some((self.weighed.first()?.fit, self.left.first()?.error))
     }
 
-    /// Log evidence of a further set, on the scale of the others.
+    /// Returns the log evidence of a further set, on the scale of the others.
     pub(crate) fn evidence(&self, records: &Records<'_>, set: &Predicted<'_>) -> f64 {
         let residuals = self.basis.residuals(records, set.followed, &set.after);
         let powers = self.likelihood.powers(&residuals);

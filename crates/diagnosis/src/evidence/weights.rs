@@ -1,4 +1,4 @@
-//! From scores to probabilities and a verdict.
+//! Weights of sets: from log evidence to probabilities, and the prices of effects.
 
 use crate::data::segments::Data;
 use crate::evidence::likelihood::{Likelihood, View};
@@ -9,49 +9,50 @@ use crate::noise::statistics::chi_squared_above;
 use crate::search::archive::Archive;
 use rayon::prelude::*;
 
-/// Share of what recalibration leaves that is without a name, at which `unknown` is as likely a verdict as
+/// Share of the recalibrated simulator's gap without a name at which the verdict `unknown` is as likely as
 /// the named effects that explain the rest.
 ///
-/// In training banks nearly every set that leaves something behind is wrong, however little it is: the
-/// smaller this share, the better. But laws of the vocabulary are idealizations of what acts in a machine,
-/// and a set that explains all but a few hundredths of a gap is worth its names.
+/// In training banks nearly every set that leaves something is wrong, however little it is: the smaller this
+/// share, the better. But the laws of the vocabulary idealize those of a machine, and a set that explains all
+/// but a few hundredths of a gap deserves its names.
 const UNKNOWN_SHARE: f64 = 0.03;
 
-/// How steeply the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice it.
+/// Exponent with which the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice
+/// it.
 const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
 
-/// Prior odds that something acts that has no name. A likelihood ratio of two variances that chance alone
-/// exceeds once in a thousand records makes them even.
+/// Prior odds that something without a name acts. A likelihood ratio of two variances that chance alone
+/// exceeds once in a thousand records makes the posterior odds even.
 const UNKNOWN_ODDS: f64 = 0.01;
 
-/// Log evidence that makes them even.
+/// Log evidence in nats at which the posterior odds of [`UNKNOWN_ODDS`] are even.
 pub(crate) const EVEN: f64 = 4.605_170_185_988_091;
 
-/// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
-/// other in one of twenty records.
+/// Distance of two explanations, in units of the noise, below which they count as indistinguishable: 2·1.645,
+/// so that either is mistaken for the other in one of twenty records.
 pub const DISTINCT_DISTANCE: f64 = 3.29;
 
-/// A set with its evidence.
+/// Set of effects with its evidence.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighed<'a> {
     pub(crate) fit: &'a Fit,
-    /// Tempered log evidence relative to the calibrated simulator.
+    /// Log evidence relative to the recalibrated simulator, in nats.
     pub(crate) evidence: f64,
     pub(crate) probability: f64,
 }
 
 impl Weighed<'_> {
-    /// The evidence where nothing is left that flexible effects could soak up: whether that is so is known only once sets
-    /// were asked what they predict.
+    /// Returns the evidence without the price of flexible effects, which applies only if something is left
+    /// that they could absorb. Whether something is left is known only after the held-out predictions.
     fn if_nothing_is_left(&self) -> f64 {
         self.evidence + FLEXIBLE * self.fit.hypothesis.flexible() as f64
     }
 }
 
-/// Sets that are kept for the case that nothing is left.
+/// Number of sets kept for the case that nothing is left.
 const CLEAN: usize = 2;
 
-/// The best [`CLEAN`] of weighed sets with effects where nothing is left.
+/// Returns the best [`CLEAN`] weighed sets with effects, ranked as if nothing were left.
 pub(crate) fn best_if_nothing_is_left<'a, 'b>(
     weighed: impl Iterator<Item = &'b Weighed<'a>>,
 ) -> Vec<&'b Weighed<'a>>
@@ -65,24 +66,25 @@ where
     best
 }
 
-/// Log likelihood ratio of a fit over another on the same data, tempered.
+/// Returns the tempered log likelihood ratio of a fit over another on the same data. `time` is the
+/// autocorrelation time in samples.
 pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
     other.nats_behind(fit.squares, time)
 }
 
-/// What sets of effects are weighed by on the same samples.
+/// Common basis for weighing sets of effects on the same samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighing<'a> {
     data: &'a Data,
     calibrated: &'a Fit,
     likelihood: Likelihood,
-    /// Log likelihood of the calibrated simulator.
+    /// Log likelihood of the recalibrated simulator.
     bare: f64,
     vocabulary: usize,
 }
 
 impl<'a> Weighing<'a> {
-    /// Beside what the closest set of an archive leaves.
+    /// Creates the likelihood from the residual of the archive's closest set.
     pub(crate) fn of(data: &'a Data, calibrated: &'a Fit, archive: &Archive, vocabulary: usize) -> Self {
         let closest = archive.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
         let closest = &closest.unwrap_or(calibrated).residuals;
@@ -92,8 +94,8 @@ impl<'a> Weighing<'a> {
         Self { data, calibrated, likelihood, bare, vocabulary }
     }
 
-    /// Log evidence of a set relative to the calibrated simulator: what it gains, less the Bayesian information
-    /// criterion's price of its parameters and that of its effects.
+    /// Returns the log evidence of a set relative to the recalibrated simulator: the gain in log likelihood,
+    /// minus the price of its parameters by the Bayesian information criterion and the price of its effects.
     pub(crate) fn evidence(&self, fit: &Fit) -> f64 {
         let parameters = fit.globals().saturating_sub(self.calibrated.globals()) + further_starts(fit);
         let fitted = parameter_price(parameters, self.likelihood.worth());
@@ -101,7 +103,7 @@ impl<'a> Weighing<'a> {
         own - self.bare - fitted - price(self.data, fit, self.vocabulary, 1.0)
     }
 
-    /// Every set with its probability, best first; the calibrated simulator alone is the empty one.
+    /// Returns every set with its probability, best first. The empty set is the recalibrated simulator alone.
     pub(crate) fn weigh<'b>(&self, archive: &'b Archive) -> Vec<Weighed<'b>> {
         let of = |fit: &'b Fit| Weighed { fit, evidence: self.evidence(fit), probability: 0.0 };
         let mut weighed: Vec<Weighed<'b>> = archive.fits.par_iter().map(of).collect();
@@ -111,7 +113,7 @@ impl<'a> Weighing<'a> {
     }
 }
 
-/// Gives sets, best first, their probabilities among each other.
+/// Sets the probabilities of sets, which come best first, so that they add up to 1.
 pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
     // Without sets there is nothing to share.
     let best = weighed.first().map_or(0.0, |w| w.evidence);
@@ -121,20 +123,21 @@ pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
     }
 }
 
-/// Log evidence that an effect has to bring which can sit where it likes on a record. In training banks
-/// (`experiments/rigs`, seed 1) such effects that brought 20 to 50 nats were there in 13 % of the cases, and plain laws
-/// that brought that much in 54 %: what a small unlisted law leaves has room for one. With this price evidence means the
-/// same for both.
+/// Price in nats of a flexible effect, one that can act anywhere on a record. In training banks
+/// (`experiments/rigs`, seed 1) flexible effects that gained 20 to 50 nats were there in 13 % of the cases,
+/// and plain laws that gained as much in 54 %: a small unlisted law leaves room for a flexible effect. With
+/// this price, evidence means the same for both.
 const FLEXIBLE: f64 = 30.0;
 
-/// Log evidence that every number has to bring which says how an effect looks: twenty to one, so that a law is the special
-/// case of another unless the data say otherwise.
+/// Price in nats of every shape parameter of an effect: odds of twenty to one, so that a law counts as the
+/// special case of another unless the data say otherwise.
 const SHAPE: f64 = 3.0;
 
-/// Log evidence that a set pays for its effects: each for having been chosen from a vocabulary, [`SHAPE`] for every such
-/// number, and [`FLEXIBLE`]. Held-out parts charge for what is fitted to noise; this is for what
-/// could have been fitted instead. `left_over` is the probability that something is left beside the best set: where nothing
-/// is, there is nothing for a flexible effect to soak up.
+/// Returns the price of a set's effects in nats: for each effect the logarithm of the size of the vocabulary
+/// that it was chosen from, [`SHAPE`] for every shape parameter, and [`FLEXIBLE`] for a flexible effect.
+/// Held-out parts charge for what is fitted to noise; this price charges for what could have been fitted
+/// instead. `left_over` is the probability that something is left beside the best set: if nothing is left, a
+/// flexible effect has nothing to absorb.
 pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize, left_over: f64) -> f64 {
     let of = |own: &Candidate| {
         let shapes = own.parameters(&data.facts).iter().filter(|parameter| parameter.shape).count();
@@ -145,22 +148,23 @@ pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize, left_over: f64) -
     fit.hypothesis.counted().map(of).sum()
 }
 
-/// Probability that anything acts that has no name, from the evidence for it.
+/// Returns the probability that something without a name acts, from the log evidence for it.
 pub(crate) fn acts(evidence: f64) -> f64 {
     1.0 / (1.0 + (-evidence).exp() / UNKNOWN_ODDS)
 }
 
-/// Probability that the answer is something without a name: that anything without a name acts, times how much
-/// of the gap it would be. The odds that it is the answer are (share/0.03)^2.885.
+/// Returns the probability that the verdict is `unknown`: the probability `acts` that something without a
+/// name acts, times a function of its share of the gap. The odds in that function are (share/0.03)^2.885.
 pub(crate) fn unknown(acts: f64, share: f64) -> f64 {
     let odds = (share.max(0.0) / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
     acts * odds / (1.0 + odds)
 }
 
-/// Probability with which a right calibration is called off.
+/// Probability with which a correct calibration is called wrong.
 pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
 
-/// Whether fitting `parameters` coefficients improves a fit more than chance does with a given probability.
+/// Returns `true` if `parameters` additional coefficients improve a fit by more than chance does with
+/// probability `chance`. `time` is the autocorrelation time in samples.
 pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usize, chance: f64) -> bool {
     2.0 * ratio(better, worse, time) > chi_squared_above(parameters as f64, chance)
 }

@@ -1,4 +1,4 @@
-//! The gap budget: shares by cause that add up.
+//! Gap budget: shares of the gap by cause, which add up to 1.
 
 use crate::answer::Budget;
 use crate::model::dictionary::Dictionary;
@@ -10,8 +10,8 @@ use nalgebra::DMatrix;
 pub(crate) const CLASSES: [Class; 5] =
     [Class::Dissipative, Class::Conservative, Class::TimeDependent, Class::Sensor, Class::Clock];
 
-/// Shapley values of `count` players: the mean, over all orders in which they can come, of what each adds. `worth` maps
-/// a set, as bits, to what it explains.
+/// Computes the Shapley values of `count` players: the mean, over all orders in which they can join, of what
+/// each adds. `worth` maps a set, as bits, to its worth.
 ///
 /// # Reference
 /// Shapley, in Contributions to the Theory of Games II, Princeton 1953, 307.
@@ -26,7 +26,7 @@ pub(crate) fn shapley(count: usize, worth: &dyn Fn(usize) -> f64) -> Vec<f64> {
                 .map(|set| {
                     let size = set.count_ones() as usize;
                     let weight = factorial(size) * factorial(count - size - 1) / factorial(count);
-                    // There is a worth for every set.
+                    // Every set has a worth.
                     let at = |set: usize| worths.get(set).copied().unwrap_or(0.0);
                     weight * (at(set | (1 << player)) - at(set))
                 })
@@ -35,7 +35,8 @@ pub(crate) fn shapley(count: usize, worth: &dyn Fn(usize) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// Squares that all columns of some classes would take away together.
+/// Returns the sum of squares that all columns of some classes would explain together, to first order.
+/// `classes` is a bit set over [`CLASSES`].
 fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
     let columns: Vec<usize> = dictionary
         .entries
@@ -50,7 +51,7 @@ fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
         return 0.0;
     }
     let products = dictionary.products.select_rows(&columns).select_columns(&columns);
-    // Neighbors on a grid of shapes are nearly dependent; a small ridge shares between them.
+    // Neighbors on a grid of shapes are nearly dependent; a small ridge distributes the gain among them.
     let products = ridged(&products, 0..columns.len(), 1e-4);
     let scores =
         DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&dictionary.scores, c)));
@@ -58,10 +59,11 @@ fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
     solve(&products, &scores).map_or(0.0, |solution| solution.dot(&scores).max(0.0))
 }
 
-/// The budget: what named effects explain goes to their classes, what is left beyond the noise is shared among classes
-/// by Shapley's rule on the dictionary at the repaired fit.
+/// Computes the budget. The squares that named effects explain go to their classes. The left-over beyond the
+/// noise is distributed among the classes by Shapley values on the dictionary at the repaired fit.
 ///
-/// `named` are classes and squares of the named effects; `left` are the squares beyond the noise that they leave.
+/// `named` holds class and squares of each named effect; `left` is the sum of squares beyond the noise that
+/// they leave.
 pub(crate) fn budget(named: &[(Class, f64)], left: f64, dictionary: Option<&Dictionary>) -> Budget {
     let mut shares = [0.0; 5];
     for (class, squares) in named {

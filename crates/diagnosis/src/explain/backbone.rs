@@ -1,5 +1,5 @@
-//! A system's portrait from its series: backbone curves and the restoring-force surface. Pictures for people;
-//! no verdict rests on them.
+//! Backbone curves and restoring-force surface of a system, computed from its series. They are plots for
+//! people; no verdict rests on them.
 
 use crate::answer::Series;
 use dynamics::Coefficients;
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// One cycle of a free swing, from a turning point to the next but one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
-    /// Half the mean distance of neighboring turning points, in the observed unit.
+    /// Half the mean distance between neighboring turning points, in the unit of the values.
     pub amplitude: f64,
     /// Angular frequency in rad/s.
     pub frequency: f64,
@@ -18,35 +18,36 @@ pub struct Swing {
     pub decay_rate: f64,
 }
 
-/// A cell of the restoring-force surface.
+/// Cell of the restoring-force surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceCell {
-    /// Lower and upper bound of position and velocity.
+    /// Lower and upper bound of the position, then of the velocity.
     pub bounds: [[f64; 2]; 2],
-    /// Mean measured acceleration, the input's part taken away.
+    /// Mean measured acceleration, without the input's part.
     pub measured: f64,
-    /// What of it the nominal law with these coefficients lacks.
+    /// Mean difference between this acceleration and that of the nominal law with the given coefficients.
     pub missing: f64,
-    /// Samples in the cell.
+    /// Number of samples in the cell.
     pub samples: usize,
 }
 
-/// Part of the largest lobe of a stretch that a lobe has to reach to count: below, noise makes lobes of its own.
+/// Smallest lobe that counts, relative to the range of the stretch; noise makes smaller lobes of its own.
 const SMALLEST_LOBE: f64 = 0.05;
-/// A parabola is laid through so much of a lobe on either side of its turning point. A cosine departs from its
-/// parabola by 0.3 % of the amplitude there.
+/// Part of a lobe, on either side of its turning point, through which a parabola is laid. At its ends a
+/// cosine departs from its parabola by 0.3 % of the amplitude.
 const TURN: f64 = 1.0 / 6.0;
-/// Cells of the surface along each axis.
+/// Number of cells of the surface along each axis.
 const CELLS: usize = 14;
-/// Fewest samples of a cell that is shown.
+/// Minimum number of samples of a cell that is returned.
 const FEWEST: usize = 5;
-/// Derivatives are those of a cubic over so much of a period on either side.
+/// Part of a period, on either side of a sample, over which a cubic is fitted to get derivatives.
 const REACH: f64 = 1.0 / 16.0;
 
-/// Frequency and decay rate by amplitude of a series such as `observed`, cycle by cycle: turning points are those of
-/// parabolas through the neighborhood of each extreme.
+/// Computes frequency and decay rate by amplitude, cycle by cycle. `values` has one value for each sample of
+/// `series`, as `observed` does. Turning points are the vertices of parabolas through the neighborhood of
+/// each extreme.
 ///
-/// Segments have start states of their own, so that no cycle reaches from one into the next.
+/// Segments have start states of their own, so that no cycle extends from one into the next.
 #[must_use]
 pub fn backbone(series: &Series, values: &[f64]) -> Vec<Swing> {
     let mut swings = Vec::new();
@@ -71,9 +72,9 @@ pub fn backbone(series: &Series, values: &[f64]) -> Vec<Swing> {
     swings
 }
 
-/// The measured acceleration over position and velocity of the repaired motion.
+/// Computes the measured acceleration as a function of position and velocity of the repaired motion.
 ///
-/// Accelerations come from a local cubic through the observed values (of whatever quantity they are), positions and
+/// Accelerations come from a local cubic through the observed values (which are of `quantity`), positions and
 /// velocities from the repaired motion.
 #[must_use]
 pub fn surface(series: &Series, quantity: Quantity, coefficients: &Coefficients<f64>) -> Vec<SurfaceCell> {
@@ -128,7 +129,7 @@ fn extent(values: &[f64]) -> Option<[f64; 2]> {
     (low < high && (high - low).is_finite()).then_some([low, high])
 }
 
-/// Twice the mean time between reversals; without any, the length of a segment.
+/// Returns twice the mean time between reversals, in seconds; without any, the mean length of a segment.
 fn period(series: &Series) -> f64 {
     let (mut length, mut reversals, mut count) = (0.0, 0.0, 0.0);
     for segment in segments(series) {
@@ -136,19 +137,20 @@ fn period(series: &Series) -> f64 {
             length += last - first;
             count += 1.0;
         }
-        // Segments are within their series.
+        // Segments lie within their series.
         let speeds = series.velocity.get(segment).unwrap_or_default();
         reversals += speeds.windows(2).filter(|pair| matches!(pair, [a, b] if a * b < 0.0)).count() as f64;
     }
     2.0 * length / f64::max(reversals, 2.0 * f64::max(count, 1.0))
 }
 
-/// Times and values where a series turns: complete lobes about the middle of its own range only.
+/// Returns times and values of the turning points: those of complete lobes about the mean value of the
+/// series.
 fn turning_points(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
     let Some([low, high]) = extent(values) else { return Vec::new() };
     let middle = values.iter().sum::<f64>() / values.len() as f64;
     let margin = SMALLEST_LOBE * (high - low);
-    // Lobes by a crossing with hysteresis, so that noise about the middle ends none.
+    // Lobes end at a crossing with hysteresis, so that noise about the middle ends none.
     let mut lobes: Vec<Range<usize>> = Vec::new();
     let mut side = 0.0;
     let mut start = 0;
@@ -162,11 +164,11 @@ fn turning_points(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
             start = index;
         }
     }
-    // The first may have begun before the stretch did.
+    // The first lobe may have begun before the stretch did.
     lobes.into_iter().skip(1).filter_map(|lobe| turn(times, values, lobe, middle)).collect()
 }
 
-/// Vertex of a parabola through the neighborhood of a lobe's extreme.
+/// Returns the vertex of a parabola through the neighborhood of a lobe's extreme.
 fn turn(times: &[f64], values: &[f64], lobe: Range<usize>, middle: f64) -> Option<(f64, f64)> {
     // Indices are those of the lobe.
     let far = |index: &usize| values.get(*index).map_or(0.0, |value| (value - middle).abs());
@@ -182,7 +184,7 @@ fn turn(times: &[f64], values: &[f64], lobe: Range<usize>, middle: f64) -> Optio
     (place.abs() <= reach).then(|| (center + place, level - slope * slope / (4.0 * bend)))
 }
 
-/// The acceleration at a sample by a local cubic through the observed values.
+/// Returns the acceleration at a sample, from a local cubic through the observed values.
 fn acceleration(
     series: &Series,
     segment: Range<usize>,
@@ -198,7 +200,7 @@ fn acceleration(
     let near = |index: usize| at(index).is_some_and(|(time, _)| (time - now).abs() <= reach);
     let within = |span: usize| index >= segment.start + span && index + span < segment.end;
     let span = (1..).take_while(|&span| within(span) && near(index - span) && near(index + span)).count();
-    // A cubic needs two neighbors on either side; at the ends of a segment there are none.
+    // A cubic needs two neighbors on either side; the ends of a segment lack them.
     let span = Some(span.max(2)).filter(|&span| within(span))?;
     let (first, last) = (index - span, index + span);
     let points: Vec<(f64, f64)> =
@@ -210,7 +212,8 @@ fn acceleration(
     })
 }
 
-/// Least-squares polynomial of a degree up to 3 through points about 0; `None` where they do not determine it.
+/// Fits a polynomial of a degree up to 3 to points about 0 by least squares; `None` if they do not determine
+/// it.
 fn cubic(points: &[(f64, f64)], degree: usize) -> Option<[f64; 4]> {
     let reach = points.iter().map(|point| point.0.abs()).fold(0.0, f64::max);
     if points.len() <= degree || reach == 0.0 {
@@ -218,14 +221,14 @@ fn cubic(points: &[(f64, f64)], degree: usize) -> Option<[f64; 4]> {
     }
     let values = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
     let power =
-        // A row for every point.
+        // There is a row for every point.
         |row: usize, power: usize| points.get(row).map_or(0.0, |(time, _)| (time / reach).powi(power as i32));
     let matrix = nalgebra::DMatrix::<f64>::from_fn(points.len(), degree + 1, power);
     let normal = matrix.tr_mul(&matrix).cholesky()?;
     let solved = normal.solve(&matrix.tr_mul(&values));
     let mut coefficients = [0.0; 4];
     for (power, coefficient) in coefficients.iter_mut().enumerate().take(degree + 1) {
-        // A solution for every power.
+        // There is a solution for every power.
         *coefficient = solved.get(power).copied().unwrap_or_default() / reach.powi(power as i32);
     }
     Some(coefficients)

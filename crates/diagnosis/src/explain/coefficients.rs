@@ -1,4 +1,4 @@
-//! Coefficients with units and intervals, as the answer gives them.
+//! Coefficients with units and intervals, in the form that the answer reports.
 
 use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
 use crate::evidence::context::Context;
@@ -13,27 +13,28 @@ use dynamics::{NominalSimulator, Units};
 use nalgebra::DMatrix;
 use record::Quantity;
 
-/// Variance that the inverse of the normal equations is a multiple of: the residual's, for as many samples as its
-/// autocorrelation leaves.
+/// Returns the factor between the inverse of the normal equations and a covariance: the variance of the
+/// residual, times its autocorrelation time.
 pub(crate) fn variance(fit: &Fit) -> f64 {
     fit.squares / fit.freedom() * fit.autocorrelation_time()
 }
 
 pub(crate) fn around(value: f64, error: f64) -> Interval {
-    // An error without bounds, whatever the variance that it was multiplied by.
+    // A standard error from [`UNBOUNDED`] counts as infinite, whatever the variance that multiplied it.
     let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
     let reach = normal_above(0.025) * error;
     Interval { value, interval_95: [value - reach, value + reach] }
 }
 
-/// A global parameter with its interval.
+/// Returns the estimate and 95 % interval of a global parameter.
 pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
-    // A global parameter has its place.
+    // Every global parameter has its place.
     let value = fit.point.globals.get(index).copied().unwrap_or_default();
     around(value, (variance(fit) * entry(&fit.inverse, index, index)).max(0.0).sqrt())
 }
 
-/// Standard errors of a law's parameters, whose fitted ones begin at a place among the globals.
+/// Returns the standard errors of a law's parameters. `fitted` are its fitted parameters, which begin at
+/// index `at` of the globals.
 pub(crate) fn spread(fit: &Fit, candidate: Candidate, at: usize, fitted: &[f64]) -> Vec<f64> {
     let count = fitted.len();
     let mut change = DMatrix::identity(count, count);
@@ -45,7 +46,7 @@ pub(crate) fn spread(fit: &Fit, candidate: Candidate, at: usize, fitted: &[f64])
     covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
 }
 
-/// What a fit says of the parameters of one of its effects; nothing of one that it does not have, or that is held.
+/// Returns a fit's estimates of the parameters of one effect; empty if the fit lacks the effect or holds it.
 pub(crate) fn parameters(work: &Context<'_>, fit: &Fit, candidate: Candidate) -> Vec<ParameterEstimate> {
     let facts = &work.data.facts;
     let units = fit.hypothesis.nominal.units();
@@ -67,7 +68,7 @@ pub(crate) fn parameters(work: &Context<'_>, fit: &Fit, candidate: Candidate) ->
         })
         .collect();
     if let Some(name) = candidate.step_parameter() {
-        // Read off the values, without a fit.
+        // The step is read off the values, not fitted.
         let unit = unit(candidate, 0, units, work.data.quantity);
         let estimate = around(facts.resolution, 0.0);
         estimates.insert(0, ParameterEstimate { name, unit, estimate, determined: true });
@@ -85,7 +86,7 @@ fn unit(candidate: Candidate, index: usize, units: Units, observed: Quantity) ->
     candidate.quantity(index).unit_seen(units, observed).to_owned()
 }
 
-/// What calibration makes of the oscillator's coefficients, without candidates and with them.
+/// Returns the coefficients of the oscillator as calibrated without candidates and with them.
 pub(crate) fn calibration(work: &Context<'_>, repaired: &Fit) -> Vec<Calibrated> {
     let base = &work.base.calibrated;
     let coefficients = base.hypothesis.nominal.coefficients();
@@ -103,7 +104,7 @@ pub(crate) fn calibration(work: &Context<'_>, repaired: &Fit) -> Vec<Calibrated>
     Coefficient::PLAIN.into_iter().map(row).collect()
 }
 
-/// The same of the effects that the nominal simulator has and that a fit follows.
+/// Returns the same for the effects of the nominal simulator that a fit includes.
 pub(crate) fn known(work: &Context<'_>, simulator: &NominalSimulator, repaired: &Fit) -> Vec<KnownRow> {
     let base = &work.base.calibrated;
     let own = |known: &Known| {

@@ -1,4 +1,4 @@
-//! How far the gap shrinks, with intervals.
+//! Size of the gap and its closure, with intervals.
 
 use crate::answer::{Gap, Interval};
 use crate::evidence::held_out::HeldOut;
@@ -14,17 +14,18 @@ pub(crate) struct Stages<'a> {
     pub(crate) ceiling: &'a [DVector<f64>],
 }
 
-/// Blocks of a segment: swings, of which it holds about six.
+/// Number of blocks of a segment: about one for each swing.
 const BLOCKS: usize = 6;
 
-/// A simulator that doubles the square of the gap, or worse: closures are stated down to here.
+/// Lowest closure that is stated: that of a simulator that doubles the squares of the gap. Worse ones get it
+/// too.
 const LOWEST_CLOSURE: f64 = -1.0;
 
-/// Ends of an interval of closures of a gap that is not told from none.
+/// Interval of the closure if the gap cannot be told from none.
 const ANY_CLOSURE: [f64; 2] = [LOWEST_CLOSURE, 1.0];
 
-/// Squares by block of a segment, on the scale of a variance's sum: what the fitted start states have taken
-/// is put back.
+/// Sums of squares by segment and block, scaled as those of a variance: the degrees of freedom that the
+/// fitted start states have taken are put back.
 type Squares = Vec<Vec<f64>>;
 
 fn by_block(squares: &[f64], scale: f64) -> Vec<f64> {
@@ -40,16 +41,16 @@ fn held_out(held: &HeldOut) -> Squares {
     held.residuals.iter().map(own).collect()
 }
 
-/// The noise floor's: their sum is what it comes to over all samples, and they scatter as that sum does. A
-/// sample where the floor was not measured stands for the mean, and those where it was for all: each
-/// deviation counts N/n times.
+/// Returns the squares of the noise floor. Their sum is the floor over all samples, and they scatter as that
+/// sum does. A sample at which the floor was not measured counts as the mean. The measured ones stand for
+/// all: each deviation from the mean counts N/n times.
 fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
     let mean = floor.value * floor.value;
     let samples = squares.iter().map(Vec::len).sum::<usize>();
     let worth = samples as f64 / floor.count.max(1) as f64;
     let own = |squares: &Vec<Option<f64>>| {
         let filled: Vec<f64> =
-            // Where no difference was taken the mean stands.
+            // The mean stands for a sample without a difference.
             squares.iter().map(|square| mean + worth * square.map_or(0.0, |square| square - mean)).collect();
         by_block(&filled, 1.0)
     };
@@ -65,7 +66,7 @@ fn closure(after: f64, before: f64, noise: f64) -> f64 {
     if excess > 0.0 { (1.0 - (after - noise) / excess).max(LOWEST_CLOSURE) } else { 0.0 }
 }
 
-/// Interval of a ratio of sums of squares, block by block.
+/// Returns the interval of a ratio of sums of squares, computed from blocks.
 fn interval(squares: [&Squares; 3], block: impl Fn([f64; 3]) -> Block) -> Option<[f64; 2]> {
     let [one, other, third] = squares;
     let runs: Vec<Vec<Block>> = one
@@ -77,9 +78,9 @@ fn interval(squares: [&Squares; 3], block: impl Fn([f64; 3]) -> Block) -> Option
     ratio_interval(&runs)
 }
 
-/// The gap. Intervals hold the sums of squares of the simulators and of the noise floor against one another,
-/// swing by swing ([`ratio_interval`]). Where the gap is not told from none its closure may be anything from
-/// [`LOWEST_CLOSURE`] to 1.
+/// Computes the gap. Its intervals compare the sums of squares of the simulators with those of the noise
+/// floor, swing by swing ([`ratio_interval`]). If the gap cannot be told from none, the interval of its
+/// closure extends from [`LOWEST_CLOSURE`] to 1.
 pub(crate) fn gap(
     stages: &Stages<'_>,
     (floor, floors): (NoiseFloor, &[Vec<Option<f64>>]),
@@ -112,7 +113,7 @@ pub(crate) fn gap(
         nominal: r0.sqrt(),
         recalibrated: rc.sqrt(),
         repaired: rm.sqrt(),
-        // Where a free torque predicts worse than none, none is the better choice.
+        // If a free torque predicts worse than none, none is the better choice.
         ceiling: (left / freedom.max(1.0)).min(rm).sqrt(),
         closure: closed(&nominal, closure(rm, r0, noise)),
         closure_of_recalibrated: closed(&recalibrated, closure(rm, rc, noise)),
@@ -130,7 +131,8 @@ pub(crate) fn gap(
     }
 }
 
-/// Mean paired difference of squares by segment over its standard error: by how many standard errors `after` is better.
+/// Returns the mean paired difference of squares by segment over its standard error; positive if `after` is
+/// better.
 pub(crate) fn paired(before: &[DVector<f64>], after: &[DVector<f64>]) -> f64 {
     let differences: Vec<f64> =
         before.iter().zip(after).map(|(b, a)| b.norm_squared() - a.norm_squared()).collect();

@@ -1,4 +1,4 @@
-//! Where the gap lies: maps over time, amplitude, phase plane and frequency.
+//! Maps of the gap over time, amplitude, phase plane and frequency.
 
 use crate::answer::Cell;
 use crate::data::segments::Data;
@@ -11,19 +11,19 @@ const FAMILY: f64 = 0.05;
 
 const AMPLITUDES: usize = 8;
 const PLANE: usize = 6;
-/// Bands of frequency, in multiples of the oscillator's own.
+/// Edges of the frequency bands, in multiples of the oscillator's own frequency.
 const BANDS: [f64; 8] = [0.0, 0.5, 1.5, 2.5, 3.5, 5.0, 8.0, 12.0];
 const FEWEST: usize = 10;
 
-/// One sample of a map: where it lies, and both residuals.
+/// One sample of a map: its coordinates and both residuals.
 struct Sample {
     at: Vec<f64>,
     recalibrated: f64,
     repaired: f64,
 }
 
-/// Cells of a regular grid. The band is the square root of the noise variance times the upper quantile of χ²/n, shared
-/// among the cells (Bonferroni).
+/// Computes the cells of a regular grid. The band of a cell is the noise times the square root of the upper
+/// quantile of χ²/n, at a probability shared among the cells (Bonferroni).
 fn cells(samples: &[Sample], edges: &[Vec<f64>], noise: f64) -> Vec<Cell> {
     let mut bounds: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     for axis in edges {
@@ -71,12 +71,12 @@ fn cells(samples: &[Sample], edges: &[Vec<f64>], noise: f64) -> Vec<Cell> {
 }
 
 fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
-    // The last edge lies a whisker beyond, so that the largest value is inside.
+    // The last edge lies slightly beyond the highest value, so that this value is inside.
     let width = (high - low) * (1.0 + 1e-9);
     (0..=count).map(|i| low + width * i as f64 / count as f64).collect()
 }
 
-/// All four maps.
+/// Computes all four maps: over time, amplitude, phase plane and frequency.
 pub(crate) fn maps(
     data: &Data,
     paths: &[Path],
@@ -115,7 +115,7 @@ pub(crate) fn maps(
     ]
 }
 
-/// Root mean square of a residual within bands of frequency, by the periodogram of each segment.
+/// Computes the RMS of a residual in bands of frequency, from the periodogram of each segment.
 fn spectrum(data: &Data, recalibrated: &[DVector<f64>], repaired: &[DVector<f64>], noise: f64) -> Vec<Cell> {
     let omega = data.facts.frequency;
     let highest = std::f64::consts::PI / data.interval();

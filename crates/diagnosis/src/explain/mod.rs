@@ -1,4 +1,5 @@
-//! What the answer shows beside its names: gap, shares, maps, the repaired simulator and the next experiment.
+//! Parts of the answer beside the names of effects: gap, shares, maps, repaired simulator and next
+//! experiment.
 
 pub(crate) mod attribution;
 pub(crate) mod backbone;

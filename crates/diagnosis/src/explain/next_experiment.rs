@@ -1,4 +1,4 @@
-//! The experiment that would tell two explanations apart.
+//! Choice of the experiment that best separates two explanations.
 
 use crate::answer::Experiment;
 use crate::data::segments::{Data, Segment};
@@ -10,16 +10,16 @@ use dynamics::{DynamicsError, Input};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A further record beside the present data.
+/// Further record beside the present data.
 struct Plan {
     text: &'static str,
-    /// Start of the new record relative to the present one's.
+    /// Deflection at the start of the new record relative to the present one's.
     release: f64,
     /// Length relative to the present one's.
     length: f64,
     /// Input relative to the present one's.
     drive: f64,
-    /// Angle by which the mount is turned.
+    /// Angle by which the mount is turned, in radians.
     tilt: f64,
 }
 
@@ -39,10 +39,10 @@ const DRIVEN: [Plan; 2] = [
     plan("drive once more with half the input", 1.0, 1.0, 0.5, 0.0),
 ];
 
-/// An angle is released no farther than this; beyond it a spring or a stop is another one.
+/// Largest release angle, in radians; beyond it a spring or a stop may behave differently.
 const FARTHEST: f64 = 0.75 * PI;
 
-/// A point with the angle of its weight turned.
+/// Returns the global parameters of a fit with its weights turned by an angle.
 fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
     let mut point = model.point.globals.clone();
     let calibrated = model.hypothesis.calibrated.len();
@@ -60,7 +60,7 @@ fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
     point
 }
 
-/// The present segments, without noise, as `model` would give them.
+/// Returns the present segments with the noiseless values that `model` predicts.
 fn noiseless(data: &Data, model: &Fit) -> Result<Vec<Segment>, DynamicsError> {
     let mut segments = data.segments.clone();
     let mut now = Simulator::new(data, &model.hypothesis, &model.point.globals, Derivatives::None)?;
@@ -73,7 +73,7 @@ fn noiseless(data: &Data, model: &Fit) -> Result<Vec<Segment>, DynamicsError> {
     Ok(segments)
 }
 
-/// Data without noise as `model` would give them: the present segments, and those of a further record.
+/// Returns noiseless data as `model` predicts them: the present segments, and those of a further record.
 fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), DynamicsError> {
     let (mut segments, mut starts) = (noiseless(data, model)?, model.point.starts.clone());
     let record = data.inputs.len();
@@ -126,20 +126,20 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
     Ok((Data { segments, ..planned }, Point { globals: Vec::new(), starts }))
 }
 
-/// Distance, in noise units, at which the rival would still be after it has been fitted to what the model gives in
-/// the present experiment and in a further one.
+/// Fits the rival to what the model predicts for the present experiment and a further one, and returns the
+/// distance that remains between them, in units of the noise.
 fn distance(data: &Data, model: &Fit, rival: &Fit, plan: &Plan, noise: f64) -> Option<f64> {
     let (future, made) = synthetic(data, model, plan).ok()?;
     let length = rival.hypothesis.start_length();
     let starts = made.starts.iter().map(|start| start.iter().copied().cycle().take(length).collect());
     let point = Point { globals: rival.point.globals.clone(), starts: starts.collect() };
-    // Under a turned mount the rival's own gravity turns too; that is only the same law where both have it.
+    // With a turned mount the rival's own gravity turns too; it is the same law only if both have one.
     let fitted = fit(&future, &rival.hypothesis, point, Moving::All, Stopping::PLANNED).ok()?;
     Some(fitted.squares.sqrt() / noise)
 }
 
-/// The experiment with the largest distance between a model and its rival. `noise` is that of the data's samples (for
-/// thinned data, divided by the square root of the stride).
+/// Returns the experiment with the largest distance between a model and its rival. `noise` is that of the
+/// data's samples (for strided data, divided by the square root of the stride).
 pub(crate) fn next(data: &Data, model: &Fit, rival: &Fit, noise: f64) -> Option<Experiment> {
     let driven = data.driven();
     let has = |fit: &Fit| fit.hypothesis.candidates.iter().any(|own| own.is_weight());
@@ -152,7 +152,7 @@ pub(crate) fn next(data: &Data, model: &Fit, rival: &Fit, noise: f64) -> Option<
     let considered: Vec<(String, f64)> = usable
         .into_par_iter()
         .filter_map(|plan| {
-            // A model without gravity sees nothing of the turn; let the one that has it make the data.
+            // A model without gravity predicts no effect of the turn, so the one that has it makes the data.
             let (from, to) = if plan.tilt != 0.0 && has(rival) { (rival, model) } else { (model, rival) };
             Some((plan.text.to_owned(), distance(data, from, to, plan, noise)?))
         })

@@ -1,11 +1,12 @@
-//! What is left beside the named effects, where it has a shape: a torque that repeats along the position.
+//! Torque without a name that repeats along the position, in the left-over beside the named effects.
 //!
-//! Magnets, balls in a bearing and the turns of a screw pull back and forth as a body moves on. No effect of the
-//! vocabulary does, and a record does not tell these causes apart, so that such a torque gets no name. But a simulator
-//! that has it follows the motion more closely, and whoever looks for the cause knows how often it repeats in a turn.
+//! Magnets, balls in a bearing and the turns of a screw pull back and forth as a body moves on. No effect of
+//! the vocabulary does so, and a record does not tell these causes apart, so that such a torque gets no name.
+//! But a simulator that includes it follows the motion more closely, and its wavenumber helps to find the
+//! cause: it tells how often the torque repeats in a turn.
 //!
-//! It is looked for once all names are given. Before, it only takes part as what could stand in the place of others
-//! ([`crate::search::nameless`]).
+//! The search for it runs after all names are given. Before, such a torque only takes part as an alternative
+//! to named effects ([`crate::search::nameless`]).
 
 use crate::answer::Interval;
 use crate::data::segments::Data;
@@ -27,43 +28,44 @@ use crate::search::archive::vanished;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 
-/// A torque without a name, beside the named effects.
+/// Torque without a name, fitted beside the named effects.
 pub(crate) struct Unnamed {
-    /// The named set with it, on the horizon that the set was judged on and on the segments as they were cut.
+    /// Fits of the named set with the torque: on the shooting interval that judged the set, and on the
+    /// segments as cut.
     pub(crate) followed: Fit,
     pub(crate) fitted: Fit,
     pub(crate) after: HeldOut,
-    /// Mean square on the last third, fitted to the first two.
+    /// Mean square on the last third of the data, after a fit to the first two thirds.
     pub(crate) last_third: f64,
-    /// Log evidence that it is there.
+    /// Log evidence for the torque, in nats.
     pub(crate) evidence: f64,
-    /// Squares that it takes away, and their share in what the set takes away with it.
+    /// Squares that the torque explains, and their share in what the set explains with it.
     pub(crate) squares: f64,
     pub(crate) share: Interval,
 }
 
-/// Steps of the grid of wavenumbers, in radians of the wave over the amplitude: over a swing, waves so far apart are
-/// nearly orthogonal, and a fit moves on from halfway between.
+/// Step of the grid of wavenumbers, in radians of the wave per amplitude. Over a swing, waves this far apart
+/// are nearly orthogonal, and a fit still converges from halfway between two of them.
 const STEP: f64 = 1.5;
 
-/// Numbers that it takes: a size, a wavenumber and a phase.
+/// Number of parameters of the torque: a size, a wavenumber and a phase.
 const PARAMETERS: f64 = 3.0;
 
-/// The strongest torque along the position, to first order.
+/// Strongest torque along the position, to first order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Wave {
     wavenumber: f64,
-    /// Torque of −sin and of −cos.
+    /// Amplitudes of the torques along −sin and −cos of the phase.
     torques: [f64; 2],
-    /// Squares that it would take away.
+    /// Squares that the torque would explain.
     gain: f64,
 }
 
-/// Looks for it, and fits it where it would be there by its gain to first order. It counts where it is more probable than
-/// not and predicts parts that were not fitted.
+/// Searches for the torque, and fits it if its gain to first order makes it more probable than not. It is
+/// accepted if the fit too makes it more probable than not and predicts held-out parts better.
 ///
 /// # Errors
-/// What the dynamics refuse.
+/// Returns an error if the motion cannot be computed.
 pub(crate) fn unnamed(work: &Context<'_>, held: &Held<'_>) -> Result<Option<Unnamed>, DiagnosisError> {
     let (data, named) = (work.data, held.repaired);
     let Some(followed) = beside(data, named, named.autocorrelation_time(), EVEN)? else { return Ok(None) };
@@ -84,12 +86,12 @@ pub(crate) fn unnamed(work: &Context<'_>, held: &Held<'_>) -> Result<Option<Unna
     Ok(Some(Unnamed { followed, fitted, after, last_third, evidence, squares, share }))
 }
 
-/// The fit of a set with such a torque beside it; none where by its gain to first order its log evidence over the set
-/// alone, at an autocorrelation time, stays below a bound, where it comes out as something else, or where the nominal
-/// simulator has one.
+/// Fits a set with such a torque beside it. `None` if the nominal simulator has such a torque, if the log
+/// evidence that its gain to first order promises over the set alone, at the autocorrelation time `time`,
+/// stays below `bound`, or if the fitted torque vanishes.
 ///
 /// # Errors
-/// What the dynamics refuse.
+/// Returns an error if the motion cannot be computed.
 pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<Option<Fit>, DynamicsError> {
     if named.hypothesis.knows(Candidate::UNNAMED) {
         return Ok(None);
@@ -103,15 +105,16 @@ pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<
     Ok(followed.filter(|followed| !vanished(data, followed)))
 }
 
-/// Log evidence of a set with such a torque over the set without it, at an autocorrelation time: it pays for its numbers,
-/// and for being the best of many wavenumbers.
+/// Returns the log evidence, in nats, of a set with such a torque over the set without it, at the
+/// autocorrelation time `time`. The torque pays for its parameters and for being the best of many
+/// wavenumbers.
 pub(crate) fn evidence(data: &Data, with: &Fit, without: &Fit, time: f64) -> f64 {
     let worth = (without.samples() as f64 / time).max(2.0);
     let looked = wavenumbers(data).len().max(1) as f64;
     ratio(with, without, time) - 0.5 * PARAMETERS * worth.ln() - looked.ln()
 }
 
-/// The wavenumbers that are looked at; none where samples are too far apart for any.
+/// Returns the wavenumbers that are searched; empty if the samples are too far apart for any.
 fn wavenumbers(data: &Data) -> Vec<f64> {
     let [lowest, highest] = data.facts.waves();
     let step = STEP / data.facts.amplitude;
@@ -135,7 +138,8 @@ fn strongest(data: &Data, named: &Fit) -> Result<Option<Wave>, DynamicsError> {
     Ok(waves.max_by(|a, b| a.gain.total_cmp(&b.gain)))
 }
 
-/// The torques at one wavenumber that take most away; none where calibration and start states imitate them.
+/// Returns the torques at one wavenumber that explain most; `None` if calibration and start states imitate
+/// them.
 fn wave(
     data: &Data,
     paths: &[Path],
@@ -161,18 +165,19 @@ fn wave(
     (gain.is_finite() && gain > 0.0).then_some(Wave { wavenumber, torques, gain })
 }
 
-/// The named set with a wave beside it, begun where the set ended.
+/// Fits the named set with a wave beside it, beginning where the set's fit ended.
 fn with(data: &Data, named: &Fit, wave: Wave) -> Result<Fit, DynamicsError> {
     let hypothesis =
         named.hypothesis.with(&[named.hypothesis.candidates.as_slice(), &[Candidate::UNNAMED]].concat());
     let [sine, cosine] = wave.torques;
-    // Its parameters come last: it is behind every candidate.
+    // The torque's parameters come last, behind those of every candidate.
     let globals = [named.point.globals.as_slice(), &[sine, wave.wavenumber, cosine]].concat();
     let point = Point { globals, starts: named.point.starts.clone() };
     fit(data, &hypothesis, point, Moving::All, Stopping::FINAL)
 }
 
-/// Its share in all that is taken away beyond recalibration, with an interval from a bootstrap over segments.
+/// Returns the torque's share in all that is explained beyond recalibration, with an interval from a
+/// bootstrap over segments.
 fn share(work: &Context<'_>, named: &Fit, followed: &Fit) -> Interval {
     let squares = |fit: &Fit| -> Vec<f64> {
         work.data.by_part(&fit.residuals).iter().map(|part| part.norm_squared()).collect()
@@ -206,7 +211,7 @@ mod tests {
 
     const NOISE: f64 = 5e-4;
 
-    /// What is said of 15 s of a swing with some effects, 260 samples a second.
+    /// Diagnosis of 15 s of a swing with some effects, 130 samples a second.
     fn diagnosed(effects: &[(&str, &[f64])]) -> Diagnosis {
         let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
         let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
@@ -222,7 +227,7 @@ mod tests {
         diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
     }
 
-    /// Wavenumber and torque of what has no name, with their intervals.
+    /// Wavenumber and torque of the effect without a name, with their intervals.
     fn torque(answer: &Diagnosis) -> Option<[crate::Interval; 2]> {
         let row = answer.effects.iter().find(|row| row.id == "unknown")?;
         let of = |name: &str| row.parameters.iter().find(|own| own.name == name).map(|own| own.estimate);
@@ -231,7 +236,7 @@ mod tests {
     }
 
     fn holds(interval: crate::Interval, value: f64) -> bool {
-        // Three times the half-width of a 95 % interval.
+        // 1.5 times the full width of a 95 % interval: three half-widths.
         let [low, high] = interval.interval_95;
         (interval.value - value).abs() < 1.5 * (high - low)
     }

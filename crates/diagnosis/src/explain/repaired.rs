@@ -1,4 +1,4 @@
-//! The repaired simulator: what a fit says, as numbers that another simulator can be given.
+//! Repaired simulator: the coefficients and effects of a fit, as numbers for another simulator.
 
 use crate::answer::{Interval, RepairedSimulator, Undetermined};
 use crate::data::segments::Data;
@@ -16,17 +16,17 @@ use crate::model::matrices::{entry, set};
 use dynamics::{Active, DynamicsError, Effect, Hold, Nominal, NominalSimulator};
 use nalgebra::DMatrix;
 
-/// Digits kept behind the first one of a standard error.
+/// Number of digits kept behind the first digit of a standard error.
 const GUARD: i32 = 2;
 
-/// Puts the repaired simulator together from a fit on a horizon. Where values are found to be rounded to the sensor's steps,
-/// these are part of it.
+/// Builds the repaired simulator from a fit on a shooting interval. If the values are found to be rounded to
+/// the sensor's steps, quantization is part of it.
 ///
-/// Numbers are those of the longest horizon that the fit follows: what adds up over a record shows there, and whoever runs
-/// the repaired simulator over a record sees it.
+/// The numbers are those of the longest shooting interval that the fit follows: what accumulates over a
+/// record shows there, and it matters to anyone who runs the repaired simulator over a record.
 ///
 /// # Errors
-/// What the dynamics refuse.
+/// Returns an error if the motion cannot be computed or a number is not admitted.
 pub(crate) fn repaired(
     horizon: ShootingInterval,
     segments: &Data,
@@ -44,7 +44,7 @@ pub(crate) fn repaired(
     let known = &fit.hypothesis.known;
     for stated in simulator.effects() {
         let own = Candidate::of(&stated.active).map(|(candidate, _)| candidate);
-        // What no fit follows stays as it is stated.
+        // An effect that no fit includes stays as stated.
         let place = known.iter().position(|known| Some(known.candidate) == own);
         let moved = place.map(|place| active(data, &fit, &errors, place, Some(&stated.active)));
         effects.push(moved.transpose()?.unwrap_or(stated.active));
@@ -56,15 +56,16 @@ pub(crate) fn repaired(
         }
     }
     let quantization = Effect::find("sensor_quantization")?;
-    // Stated by the simulator or fitted, it is there already.
+    // An effect that was stated or fitted is in the list already.
     if is_rounded && !effects.iter().any(|active| active.effect() == quantization) {
         effects.extend(Active::of(quantization, &[step(data)]));
     }
     Ok(RepairedSimulator { nominal, effects, undetermined, input_hold, left_out })
 }
 
-/// The fit on the longest horizon that it follows; where it is uneven, begun anew as well, as whoever diagnoses the system
-/// with the repaired simulator will: what ends closer to the data stands.
+/// Returns the fit on the longest shooting interval that it follows. If the squares are uneven in the start
+/// states, the fit is also begun anew, as a diagnosis with the repaired simulator would begin it, and the
+/// better of the two is kept.
 fn farthest(horizon: ShootingInterval, segments: &Data) -> ShootingInterval {
     let anew = restarted(&horizon, segments)
         .map(|fit| ShootingInterval::shortest(segments, &fit).farthest(segments));
@@ -76,7 +77,8 @@ fn farthest(horizon: ShootingInterval, segments: &Data) -> ShootingInterval {
     }
 }
 
-/// The best fit to the segments as they were cut from start states that nothing is known of.
+/// Returns the best fit to the segments as cut that begins at guessed start states; `None` if the hypothesis
+/// is smooth.
 fn restarted(horizon: &ShootingInterval, segments: &Data) -> Option<Fit> {
     let from = &horizon.calibrated;
     let hypothesis = &from.hypothesis;
@@ -90,10 +92,11 @@ fn restarted(horizon: &ShootingInterval, segments: &Data) -> Option<Fit> {
     fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
 }
 
-/// A number of a fit that calibration moves, or an effect's: what it is called, and how far its interval reaches.
+/// Calibrated number of a fit, or one of an effect: its name and the reach of its interval.
 struct Number {
     name: String,
-    /// What holding it takes out of the calibration; nothing for an effect that the nominal simulator lacks.
+    /// Entries that leave the calibration if the number is held; empty for an effect that the nominal
+    /// simulator lacks.
     held: Vec<Calibrated>,
     reach: f64,
     determined: bool,
@@ -129,9 +132,9 @@ fn numbers(data: &Data, fit: &Fit) -> Vec<Number> {
     all
 }
 
-/// The fit with what the data do not determine held as the nominal simulator states it, one after the other, the widest
-/// first: once one is held, another may be determined. What the data refuse to have there stays as it was fitted. Gives
-/// all numbers that are not determined.
+/// Holds the numbers that the data do not determine at their nominal values, one after the other, the widest
+/// first: once one is held, another may be determined. A number stays as fitted if the data contradict its
+/// nominal value. Also returns all numbers that are not determined.
 fn without_undetermined(data: &Data, complete: &Fit) -> (Fit, Vec<Undetermined>) {
     let time = complete.autocorrelation_time();
     let mut fit = complete.clone();
@@ -143,7 +146,7 @@ fn without_undetermined(data: &Data, complete: &Fit) -> (Fit, Vec<Undetermined>)
             .collect();
         open.sort_by(|a, b| b.reach.total_cmp(&a.reach));
         let Some(widest) = open.into_iter().next() else {
-            // What stayed as it was fitted may be determined beside those that are held.
+            // A number that stayed as fitted may be determined once others are held.
             let still = numbers(data, &fit);
             let is_open = |name: &str| still.iter().any(|number| number.name == name && !number.determined);
             found.retain(|own| own.is_nominal || is_open(&own.name));
@@ -160,7 +163,8 @@ fn without_undetermined(data: &Data, complete: &Fit) -> (Fit, Vec<Undetermined>)
     }
 }
 
-/// The fit with some of what calibration moves held at the nominal value.
+/// Refits with some of the calibrated entries held at their nominal values; `None` if there are none to hold
+/// or the fit fails.
 fn holding(data: &Data, from: &Fit, held: &dyn Fn(&Calibrated) -> bool) -> Option<Fit> {
     let own = &from.hypothesis;
     let calibrated: Vec<Calibrated> = own.calibrated.iter().copied().filter(|which| !held(which)).collect();
@@ -175,8 +179,8 @@ fn holding(data: &Data, from: &Fit, held: &dyn Fn(&Calibrated) -> bool) -> Optio
     fit(data, &hypothesis, point, Moving::All, Stopping::FINAL).ok()
 }
 
-/// The standard error of each number with all others given, laws' parameters in place of fitted ones: what rounding a
-/// number may be held against, since the others do not move along.
+/// Returns the standard error of each number with all others given, for a law's parameters in place of the
+/// fitted ones. It is the scale for rounding a number, since the others do not move along.
 fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
     let count = fit.globals();
     let mut change = DMatrix::identity(count, count);
@@ -187,7 +191,7 @@ fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
         }
     }
     let covariance = &change * &fit.inverse * change.transpose() * variance(fit);
-    // Scaled to a unit diagonal before it is inverted: units differ by many orders of magnitude.
+    // Scaled to a unit diagonal before the inversion, because units differ by many orders of magnitude.
     let scale = covariance.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let at = |index: usize| scale.get(index).copied().unwrap_or(1.0);
     let scaled = DMatrix::from_fn(count, count, |row, column| {
@@ -201,15 +205,16 @@ fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
     }
 }
 
-/// A number to the digits that its standard error leaves, and two more; as it is where no error is known (0, negative or
-/// not finite). What is less than its last digit keeps one.
+/// Rounds a number to the digits that its standard error determines, and two more. Returns it unchanged if
+/// the error is unknown (0, negative or not finite). A number smaller than its last digit keeps one digit.
 #[must_use]
 pub fn rounded(value: f64, error: f64) -> f64 {
     if !(error.is_finite() && error > 0.0) {
         return value;
     }
     let decimals = f64::from(GUARD) - error.log10().floor();
-    // The nearest double of the shortest decimal; beyond these limits it is as it is or no number.
+    // The parse gives the double nearest to the shortest decimal. Beyond these limits the value is returned
+    // as it is.
     if !(-300.0..=300.0).contains(&decimals) {
         return value;
     }
@@ -222,7 +227,7 @@ fn rounded_nominal(fit: &Fit, errors: &[f64]) -> Result<Nominal, DynamicsError> 
     let calibrated = fit.hypothesis.calibrated.iter().zip(&fit.point.globals).zip(errors);
     let point: Vec<f64> = calibrated
         .map(|((which, value), error)| match which {
-            // Not below what a coefficient may be.
+            // A rounded coefficient must not fall below 0.
             Calibrated::RestAngle => rounded(*value, *error),
             _ => rounded(*value, *error).max(0.0),
         })
@@ -230,7 +235,7 @@ fn rounded_nominal(fit: &Fit, errors: &[f64]) -> Result<Nominal, DynamicsError> 
     fit.hypothesis.calibrated_nominal(&point)
 }
 
-/// An effect of a fit by its number among all, on the ground of what the nominal simulator states of it.
+/// Returns an effect of a fit by its index among all, based on the nominal simulator's statement of it.
 fn active(
     data: &Data,
     fit: &Fit,
@@ -264,7 +269,7 @@ fn active(
     Active::of(kind, &parameters.collect::<Vec<_>>())
 }
 
-/// The sensor's step, to the digits that counting steps over the whole motion tells.
+/// Returns the sensor's step, rounded to the digits that counting steps over the whole motion determines.
 fn step(data: &Data) -> f64 {
     let facts = &data.facts;
     let step = data.resolution.unwrap_or(facts.resolution);

@@ -1,4 +1,4 @@
-//! One effect at a time: what a diagnosis is held against.
+//! Selection of one effect at a time: the baseline that a diagnosis is compared with.
 
 use crate::data::observations::Observations;
 use crate::data::segments::{MOST_SEARCHED, cut};
@@ -14,7 +14,7 @@ use crate::search::gains::alone;
 use crate::search::proposals::fit_all;
 use dynamics::NominalSimulator;
 
-/// What an effect would take away, and what its parameters cost: N·ln(SS/N) + p·ln N, for N samples with
+/// Returns the Bayesian information criterion of a fit: N·ln(SS/N) + p·ln N, for N samples with sum of
 /// squares SS and p parameters.
 fn criterion(fit: &Fit) -> f64 {
     let samples = fit.samples() as f64;
@@ -23,15 +23,16 @@ fn criterion(fit: &Fit) -> f64 {
     samples * (fit.squares / samples).max(f64::MIN_POSITIVE).ln() + parameters * samples.ln()
 }
 
-/// The effect that the Bayesian information criterion for white noise prefers, if each effect of the
-/// vocabulary is fitted alone beside the calibration, in segments of six periods; `None` where it prefers the
+/// Returns the effect that the Bayesian information criterion for white noise prefers if each effect of the
+/// vocabulary is fitted alone beside the calibration, in segments of six periods; `None` if it prefers the
 /// recalibrated simulator.
 ///
-/// The usual way to choose a model, here for comparison: no sets, no horizon, no held-out parts, residuals taken to be
-/// white, and no answer but an effect of the vocabulary. It fits with the same derivatives as [`crate::diagnose`].
+/// This is the usual way to choose a model, provided for comparison: no sets, no longer shooting intervals,
+/// no held-out parts, residuals assumed to be white, and no answer other than an effect of the vocabulary. It
+/// fits with the same derivatives as [`crate::diagnose`].
 ///
 /// # Errors
-/// As [`crate::diagnose`].
+/// Returns the same errors as [`crate::diagnose`].
 ///
 /// # Reference
 /// Schwarz, Annals of Statistics 6 (1978) 461.

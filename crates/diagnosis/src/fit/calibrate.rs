@@ -1,4 +1,4 @@
-//! The nominal simulator against the data: as it is, and recalibrated.
+//! Fits of the nominal simulator to the data: with its coefficients as they are, and recalibrated.
 
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
@@ -9,25 +9,26 @@ use crate::fit::stopping::Stopping;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Known};
 use dynamics::{Hold, Nominal, NominalSimulator};
 
-/// The given simulator and the recalibrated one.
+/// Fits of the given simulator and of the recalibrated one.
 #[derive(Debug, Clone)]
 pub(crate) struct Baseline {
-    /// Start states fitted only.
+    /// Fit of the start states only.
     pub(crate) nominal: Fit,
-    /// Coefficients fitted too.
+    /// Fit of the start states and the calibrated coefficients.
     pub(crate) calibrated: Fit,
 }
 
 impl Baseline {
-    /// Whether coefficients are off by more than chance.
+    /// Returns `true` if the coefficients differ from their nominal values by more than chance.
     pub(crate) fn is_off(&self) -> bool {
         let time = self.calibrated.autocorrelation_time();
         significant(&self.calibrated, &self.nominal, time, self.calibrated.globals(), OFF_BY_CHANCE)
     }
 }
 
-/// What calibration may move: damping always, stiffness and rest angle where there is a spring, the inertia where
-/// a measured input tells it apart from the stiffness; and known effects as stated.
+/// Returns what calibration may move: the damping always, stiffness and rest angle if there is a spring, the
+/// inertia if a measured input tells it apart from the stiffness, and the parameters of known effects that
+/// are to be recalibrated.
 pub(crate) fn movable(nominal: &Nominal, known: &[Known], driven: bool) -> Vec<Calibrated> {
     let mut movable = Vec::new();
     if driven {
@@ -44,7 +45,7 @@ pub(crate) fn movable(nominal: &Nominal, known: &[Known], driven: bool) -> Vec<C
     movable
 }
 
-/// Fits the start states alone, then the coefficients.
+/// Fits the start states alone, then the coefficients too.
 pub(crate) fn baseline(data: &Data, simulator: &NominalSimulator) -> Result<Baseline, DiagnosisError> {
     let nominal = simulator.nominal();
     let known = Known::of(simulator, data.quantity);
@@ -52,7 +53,7 @@ pub(crate) fn baseline(data: &Data, simulator: &NominalSimulator) -> Result<Base
     let hypothesis = Hypothesis { nominal: *nominal, known, calibrated, candidates: Vec::new() };
     let point = Point { globals: hypothesis.nominal_point(), starts: first_starts(data, &hypothesis) };
     let nominal = fit(data, &hypothesis, point, Moving::Starts, Stopping::FINAL)?;
-    // A stiffness far off lets the starts of the nominal fit wander: begin from both, keep the better.
+    // With a stiffness far off, the start states of the nominal fit wander: begin from both, keep the better.
     let from_guess =
         Point { globals: nominal.point.globals.clone(), starts: first_starts(data, &hypothesis) };
     let mut guessed = from_guess.clone();
@@ -73,8 +74,8 @@ pub(crate) fn baseline(data: &Data, simulator: &NominalSimulator) -> Result<Base
     Ok(Baseline { nominal, calibrated })
 }
 
-/// Gives the spring the stiffness that lets it swing at an angular frequency beside a weight; where there is none, the
-/// weight its torque.
+/// Sets the spring's stiffness so that, together with a weight, the system swings at an angular frequency.
+/// Without a spring to calibrate, scales the torque of the weight instead.
 fn swinging_at(omega: f64, simulator: &NominalSimulator, hypothesis: &Hypothesis, globals: &mut [f64]) {
     let place = |wanted: Calibrated| hypothesis.calibrated.iter().position(|own| *own == wanted);
     let wanted = hypothesis.nominal.inertia() * omega * omega;
@@ -85,13 +86,13 @@ fn swinging_at(omega: f64, simulator: &NominalSimulator, hypothesis: &Hypothesis
     }
     let known = hypothesis.known.iter().position(|known| known.candidate.is_weight());
     let first = known.and_then(|known| place(Calibrated::Effect { known, parameter: 0 }));
-    // Both of its parameters are parts of the torque.
+    // Both parameters of a weight are components of its torque.
     for torque in first.and_then(|at| globals.get_mut(at..at + 2)).into_iter().flatten() {
         *torque *= wanted / stated;
     }
 }
 
-/// The belief about the input between its samples that fits better: kept, or changing linearly.
+/// Returns the data and fits for the input hold that fits better: constant between samples, or linear.
 pub(crate) fn better_hold(
     data: &Data,
     simulator: &NominalSimulator,
@@ -102,8 +103,8 @@ pub(crate) fn better_hold(
     }
     let zero_data = data.holding(Hold::Zero)?;
     let zero = baseline(&zero_data, simulator)?;
-    // A delay that is known was found with one of the two beliefs, and half an interval lies between them: the belief with
-    // which the simulator needs no calibration stays.
+    // A known delay was found with one of the two holds, which differ by half an interval. So the hold with
+    // which the simulator needs no calibration is kept.
     let is_right = |own: &Baseline| !simulator.effects().is_empty() && !own.is_off();
     let is_better = match (is_right(&zero), is_right(&linear)) {
         (true, false) => true,

@@ -1,11 +1,11 @@
-//! What a fit ends with, and where it begins.
+//! Starting point and result of a fit.
 
 use crate::data::segments::Data;
 use crate::model::hypothesis::Hypothesis;
 use crate::noise::statistics::autocorrelation_time;
 use nalgebra::{DMatrix, DVector};
 
-/// Where a fit is: global parameters, and a start state for each segment.
+/// Values of all that a fit moves: the global parameters, and a start state for each segment.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Point {
     pub(crate) globals: Vec<f64>,
@@ -13,14 +13,14 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// Degrees of freedom that so many samples keep.
+    /// Returns the degrees of freedom that remain of so many samples, at least 1.
     pub(crate) fn freedom(&self, samples: usize) -> f64 {
         let starts: usize = self.starts.iter().map(Vec::len).sum();
         (samples as f64 - starts as f64 - self.globals.len() as f64).max(1.0)
     }
 }
 
-/// A fitted hypothesis.
+/// Fitted hypothesis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fit {
     pub(crate) hypothesis: Hypothesis,
@@ -28,12 +28,12 @@ pub(crate) struct Fit {
     /// Residuals by segment, observed minus predicted.
     pub(crate) residuals: Vec<DVector<f64>>,
     pub(crate) squares: f64,
-    /// Whether the steps became small before the budget was spent.
+    /// `true` if the fit ended before its steps were spent.
     pub(crate) converged: bool,
-    /// Global parameters that ended at an end of their range.
+    /// `true` for each global parameter that ended at a limit of its range.
     pub(crate) at_bound: Vec<bool>,
-    /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is a covariance. Without
-    /// rows where only start states were moved.
+    /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is their
+    /// covariance. Empty if only start states were moved.
     pub(crate) inverse: DMatrix<f64>,
 }
 
@@ -42,22 +42,23 @@ impl Fit {
         self.residuals.iter().map(DVector::len).sum()
     }
 
-    /// Residuals of all segments, one after the other.
+    /// Returns the residuals of all segments, one after the other.
     pub(crate) fn stacked(&self) -> impl Iterator<Item = f64> + '_ {
         self.residuals.iter().flat_map(|segment| segment.iter().copied())
     }
 
-    /// Number of parameters that are fitted to all segments.
+    /// Returns the number of global parameters, which are fitted to all segments.
     pub(crate) fn globals(&self) -> usize {
         self.point.globals.len()
     }
 
-    /// Degrees of freedom of the residual.
+    /// Returns the degrees of freedom of the residual.
     pub(crate) fn freedom(&self) -> f64 {
         self.point.freedom(self.samples())
     }
 
-    /// Log likelihood that other squares of the same samples are ahead of this fit's, tempered by an autocorrelation time.
+    /// Returns by how many nats of log likelihood this fit lies behind one with the sum of squares `squares`
+    /// on the same samples, tempered by the autocorrelation time `time`.
     pub(crate) fn nats_behind(&self, squares: f64, time: f64) -> f64 {
         let worth = self.samples() as f64 / time;
         0.5 * worth * (self.squares.max(f64::MIN_POSITIVE) / squares.max(f64::MIN_POSITIVE)).ln()
@@ -69,13 +70,13 @@ impl Fit {
     }
 }
 
-/// Start states from the segments' guesses.
+/// Returns start states made from the segments' guesses.
 pub(crate) fn first_starts(data: &Data, hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
     data.segments.iter().map(|segment| extended(&segment.guess, hypothesis)).collect()
 }
 
-/// A start state with as many entries as a hypothesis has: that of known hidden bodies stays where there is one, others
-/// move along.
+/// Extends a start state to the length that a hypothesis requires. Entries of known hidden bodies are kept if
+/// present; other hidden bodies start with the body's position and velocity.
 pub(crate) fn extended(start: &[f64], hypothesis: &Hypothesis) -> Vec<f64> {
     let known = start.iter().copied().take(hypothesis.least_start_length());
     let along = start.iter().copied().take(2).cycle();

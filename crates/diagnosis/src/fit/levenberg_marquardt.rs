@@ -1,13 +1,13 @@
-//! Levenberg–Marquardt over all segments at once, start states eliminated.
+//! Levenberg–Marquardt over all segments at once, with the start states eliminated.
 //!
-//! The normal equations are an arrow: each segment's start state meets only its own samples, the global parameters
-//! meet all. Start states are eliminated segment by segment (Schur complement), so the cost is linear in the
-//! number of samples. Bounds hold by projection: a parameter that a step would push out of its range stays at
-//! the end of it, and the step is solved anew for the others.
+//! The normal equations have the shape of an arrow: each segment's start state affects only its own samples,
+//! the global parameters affect all. Start states are eliminated segment by segment (Schur complement), so
+//! that the cost is linear in the number of samples. Bounds hold by projection: a parameter that a step would
+//! push out of its range stays at the limit, and the step is solved again for the others.
 //!
 //! # Reference
 //! Marquardt, Journal of the Society for Industrial and Applied Mathematics 11 (1963) 431 (scaling by the
-//! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (how the damping follows the gain);
+//! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (update of the damping from the gain);
 //! Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
 
 use crate::data::segments::{Data, Segment};
@@ -22,7 +22,7 @@ use crate::noise::statistics::median;
 use dynamics::DynamicsError;
 use nalgebra::DVector;
 
-/// What is moved.
+/// Parameters that a fit moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moving {
     /// Start states only.
@@ -40,8 +40,8 @@ fn evaluate(
     segments.iter().zip(&point.starts).map(|(segment, start)| simulator.predict(segment, start)).collect()
 }
 
-/// The same for a trial that is of use only below a bound on the weighted squares; `None` as soon as these
-/// are above it, which spares the rest of the segments.
+/// Evaluates a trial that is of use only below a bound on the weighted squares; `None` as soon as the squares
+/// exceed it, which saves the remaining segments.
 fn evaluate_below(
     simulator: &mut Simulator<'_>,
     segments: &[Segment],
@@ -64,42 +64,42 @@ fn evaluate_below(
     Some(predictions)
 }
 
-/// Squares of a hypothesis at a point.
+/// Returns the sum of squared residuals of a hypothesis at a point.
 ///
 /// # Errors
-/// What the dynamics refuse at that point.
+/// Returns an error if the motion cannot be computed at that point.
 pub(crate) fn squares(data: &Data, hypothesis: &Hypothesis, point: &Point) -> Result<f64, DynamicsError> {
     let mut simulator = Simulator::new(data, hypothesis, &point.globals, Derivatives::None)?;
     let at = evaluate(&mut simulator, &data.segments, point)?;
     Ok(at.iter().map(|prediction| prediction.residual.norm_squared()).sum())
 }
 
-/// Residuals of a fit on the same segments with other inputs.
+/// Returns the residuals at a fit's point on other data with the same segments, such as with other inputs.
 ///
 /// # Errors
-/// What the dynamics refuse there.
+/// Returns an error if the motion cannot be computed there.
 pub(crate) fn residuals(data: &Data, at: &Fit) -> Result<Vec<DVector<f64>>, DynamicsError> {
     let mut simulator = Simulator::new(data, &at.hypothesis, &at.point.globals, Derivatives::None)?;
     let predictions = evaluate(&mut simulator, &data.segments, &at.point)?;
     Ok(predictions.into_iter().map(|prediction| prediction.residual).collect())
 }
 
-/// The damping that a fit begins with, and begins with again.
+/// Damping at which a fit begins, and begins again.
 const FIRST_DAMPING: f64 = 1e-4;
 
-/// The damping falls by this at most after a step that gained what was promised; it stays where a step gained
-/// less than half.
+/// Smallest factor on the damping, applied after a step that gained all that it promised. The damping stays
+/// as it is after a step that gained less than half of that.
 const LOWEST_CUT: f64 = 1.0 / 3.0;
 
-/// The damping rises by this after a step that gained nothing, and by its square and cube after the next ones. Too
-/// little more of it gives the same step once more: with Nielsen's 2 and a damping of 1e-4, four steps out of five
-/// that followed a failed one failed as well.
+/// Factor on the damping after a step that gained nothing; after the next such steps its square, then its
+/// cube. With too small a factor the next step hardly differs: with Nielsen's 2 and a damping of 1e-4, four
+/// out of five steps that followed a failed one failed as well.
 const RAISE: f64 = 8.0;
 
-/// Mean square relative to the median segment's, beyond which a segment is heeded less.
+/// Mean square, relative to the median over the segments, beyond which a segment gets less weight.
 const DOUBTFUL: f64 = 2.0;
 
-/// Weights of the segments: 1 up to [`DOUBTFUL`], falling with the mean square beyond.
+/// Returns the weights of the segments: 1 up to [`DOUBTFUL`], falling with the mean square beyond it.
 fn trust(predictions: &[Prediction]) -> Vec<f64> {
     let own: Vec<f64> = predictions.iter().map(Prediction::mean_square).collect();
     let usual = median(&own).max(f64::MIN_POSITIVE);
@@ -110,7 +110,7 @@ fn weighted(predictions: &[Prediction], weights: &[f64]) -> f64 {
     predictions.iter().zip(weights).map(|(p, weight)| weight * p.residual.norm_squared()).sum()
 }
 
-/// A fit on its way.
+/// State of a running fit.
 struct Descent<'a> {
     data: &'a Data,
     hypothesis: &'a Hypothesis,
@@ -120,16 +120,17 @@ struct Descent<'a> {
     simulator: Simulator<'a>,
     point: Point,
     at: Vec<Prediction>,
-    /// Of the segments: those far behind are heeded less while it is wary.
+    /// Weights of the segments: below 1 for segments that fit badly while the descent is `wary`.
     weights: Vec<f64>,
     system: NormalEquations,
     damping: f64,
     raise: f64,
     ending: Ending,
     wary: bool,
-    /// Whether segments have begun again since the last step that gained much.
+    /// `true` if segments have begun again since the last step with a large gain.
     settled: bool,
-    /// Whether beginning again came to nothing on the way: it is then tried once more at the end only.
+    /// `true` if an attempt to begin again gained nothing before the end: the next attempt is then made at
+    /// the end only.
     in_vain: bool,
 }
 
@@ -180,7 +181,7 @@ impl<'a> Descent<'a> {
         NormalEquations::of(&self.at, weights, self.hypothesis.start_length(), globals)
     }
 
-    /// Whether a step moves sizes only, and shapes not yet.
+    /// Returns `true` if a step moves sizes only and not yet shapes.
     fn is_of_sizes(&self, step: usize) -> bool {
         step <= self.effort.sizes_first
     }
@@ -192,7 +193,7 @@ impl<'a> Descent<'a> {
         let held = self.parameters.iter().map(is_held).collect();
         let before = weighted(&self.at, &self.weights);
         let (trial, promised) = self.system.trial(&self.point, self.damping, &self.parameters, held);
-        // Nothing more to be had: no need to try.
+        // A step that promises next to nothing is not worth a trial.
         let done = self.ending.promises_nothing(promised / before, self.damping);
         let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
             let simulator = &mut self.simulator;
@@ -217,7 +218,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Goes on from a step that gained, by so much of what was promised.
+    /// Continues from a step that gained. `quality` is the ratio of the gain to the promised gain.
     fn gained(&mut self, quality: f64) {
         if self.wary {
             self.weights = trust(&self.at);
@@ -231,8 +232,8 @@ impl<'a> Descent<'a> {
         self.system = self.equations(&self.weights);
     }
 
-    /// Ends its wariness, or lets segments that are behind begin again, where it is time for either: whether the descent goes on
-    /// from there.
+    /// Ends the wary phase, or lets segments that fit badly begin again, if it is time for either. Returns
+    /// `true` if the descent continues from there.
     fn begins_again(&mut self, step: usize, ended: bool) -> Result<bool, DynamicsError> {
         if self.wary && (ended || step >= self.effort.steps / 2) {
             self.wary = false;
@@ -256,9 +257,9 @@ impl<'a> Descent<'a> {
         Ok(true)
     }
 
-    /// Lets segments that are behind begin again, at the coefficients as they are: whether one has.
+    /// Lets segments that fit badly begin again with the present coefficients. Returns `true` if any did.
     fn settle(&mut self) -> Result<bool, DynamicsError> {
-        // A trial that came to nothing has left its coefficients behind.
+        // A failed trial has left its coefficients in the simulator.
         self.simulator.set(&self.point.globals)?;
         let better = settle(self.data, self.hypothesis, &self.point, &self.at)?;
         let mut begun = false;
@@ -288,10 +289,10 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// Fits a hypothesis from a point.
+/// Fits a hypothesis, beginning at a point.
 ///
 /// # Errors
-/// What the dynamics refuse at that point.
+/// Returns an error if the motion cannot be computed at that point.
 pub(crate) fn fit(
     data: &Data,
     hypothesis: &Hypothesis,

@@ -18,7 +18,7 @@ fn nominal() -> Nominal {
     Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap()
 }
 
-/// 25 s of a swing at 3.5 Hz under dry friction that ends before the record does, with noise of 1 mrad.
+/// 25 s of a swing at 3.5 Hz with dry friction that stops it before the record ends, with noise of 1 mrad.
 fn observed(friction: f64, seed: u64) -> Observations {
     let effects = vec![Active::new("coulomb_friction", &[friction]).unwrap()];
     let system = System::new(nominal(), effects).unwrap();
@@ -32,13 +32,14 @@ fn observed(friction: f64, seed: u64) -> Observations {
     Observations::new(&record, &clock)
 }
 
-/// The squares at a fit's point, evaluated anew.
+/// Sum of squares at a fit's point, evaluated again.
 fn anew(data: &Data, found: &Fit) -> f64 {
     let stay = Stopping { steps: 0, ..Stopping::FINAL };
     fit(data, &found.hypothesis, found.point.clone(), Moving::All, stay).unwrap().squares
 }
 
-/// Dry friction makes steps fail, and segments begin again: what a fit says it leaves is what its own point leaves.
+/// With dry friction, steps fail and segments begin again. The sum of squares that a fit reports must be the
+/// one at its own point.
 #[test]
 fn squares_are_those_of_the_fits_own_point() {
     let mut checked = 0;

@@ -1,4 +1,4 @@
-//! Nonlinear least squares: the solver, when it stops, where it begins again, and the recalibrated simulator.
+//! Nonlinear least squares: solver, stopping rules, restarts of start states, and the recalibrated simulator.
 
 pub(crate) mod calibrate;
 pub(crate) mod fitted;

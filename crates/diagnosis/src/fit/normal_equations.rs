@@ -1,5 +1,6 @@
-//! The normal equations of all segments, an arrow: each segment's start state meets only its own samples, the global
-//! parameters meet all. Start states are eliminated segment by segment (Schur complement).
+//! Normal equations of all segments, in the shape of an arrow: each segment's start state affects only its
+//! own samples, the global parameters affect all. Start states are eliminated segment by segment (Schur
+//! complement).
 
 use crate::fit::fitted::Point;
 use crate::model::candidate::Parameter;
@@ -7,14 +8,14 @@ use crate::model::matrices::{element, entry, raised, set, solve};
 use crate::model::predictor::Prediction;
 use nalgebra::{DMatrix, DVector};
 
-/// Blocks of the normal equations of one segment.
+/// Blocks of one segment in the normal equations.
 struct Block {
     own: DMatrix<f64>,
     shared: DMatrix<f64>,
     right: DVector<f64>,
 }
 
-/// Normal equations of segments, start states apart from global parameters.
+/// Normal equations of segments, with start states separate from global parameters.
 pub(crate) struct NormalEquations {
     blocks: Vec<Block>,
     globals: DMatrix<f64>,
@@ -22,7 +23,7 @@ pub(crate) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Those of weighted segments.
+    /// Creates the normal equations of weighted segments.
     pub(crate) fn of(predictions: &[Prediction], weights: &[f64], starts: usize, globals: usize) -> Self {
         let mut total = DMatrix::zeros(globals, globals);
         let mut right = DVector::zeros(globals);
@@ -41,7 +42,7 @@ impl NormalEquations {
         Self { blocks, globals: total, right }
     }
 
-    /// The reduced system of the global parameters that are free.
+    /// Returns the system of the global parameters after the start states have been eliminated.
     fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let mut matrix = raised(&self.globals, damping);
         let mut right = self.right.clone();
@@ -54,7 +55,7 @@ impl NormalEquations {
         Some((matrix, right))
     }
 
-    /// The step of everything, with some global parameters held.
+    /// Solves for the step of all parameters, with some global parameters held.
     fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
         let (matrix, right) = self.reduced(damping)?;
         let free: Vec<usize> =
@@ -78,8 +79,9 @@ impl NormalEquations {
         Some((step, starts))
     }
 
-    /// Where a step leads from a point, every parameter within its range, and by how much it would decrease the squares
-    /// if the motion were linear in everything; no point where the system cannot be solved.
+    /// Returns the point that a step leads to, with every parameter within its range, and the decrease of the
+    /// squares that the linearized motion promises; `None` in place of the point if the system cannot be
+    /// solved.
     pub(crate) fn trial(
         &self,
         from: &Point,
@@ -88,7 +90,7 @@ impl NormalEquations {
         mut held: Vec<bool>,
     ) -> (Option<Point>, f64) {
         let mut promised = f64::INFINITY;
-        // Each round holds at least one parameter more.
+        // Each round holds at least one more parameter.
         for _ in 0..=parameters.len() {
             let Some((step, own)) = self.step(damping, &held) else { break };
             promised = self.promised(&step, &own);
@@ -100,7 +102,8 @@ impl NormalEquations {
                 let outside = wanted < parameter.lower || wanted > parameter.upper;
                 if outside && !*held {
                     let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
-                    // At the end already: hold it and solve again. Otherwise go there.
+                    // A parameter that is at the limit already is held and the system solved again; another
+                    // one moves to it.
                     if *value == end {
                         (*held, fresh) = (true, true);
                     }
@@ -121,13 +124,13 @@ impl NormalEquations {
         (None, promised)
     }
 
-    /// By how much a step would decrease the squares if the motion were linear in everything.
+    /// Returns the decrease of the squares by a step if the motion were linear in all parameters.
     fn promised(&self, step: &DVector<f64>, starts: &[DVector<f64>]) -> f64 {
         let own: f64 = self.blocks.iter().zip(starts).map(|(block, own)| block.right.dot(own)).sum();
         self.right.dot(step) + own
     }
 
-    /// (JᵀJ)⁻¹ of the global parameters; infinite where the system cannot be solved.
+    /// Returns (JᵀJ)⁻¹ of the global parameters; infinite if the system cannot be solved.
     pub(crate) fn inverse(&self, parameters: &[Parameter]) -> DMatrix<f64> {
         let count = self.right.len();
         self.reduced(0.0)
@@ -136,12 +139,12 @@ impl NormalEquations {
     }
 }
 
-/// What stands in an inverse for a parameter that changes nothing: its error is without bounds, and no number is spoiled
-/// by an infinite one.
+/// Entry of an inverse for a parameter that has no effect: its error has no bound. The entry is finite
+/// because an infinite one would spoil the numbers computed from it.
 pub(crate) const UNBOUNDED: f64 = 1e150;
 
-/// The inverse of the normal equations of the parameters that can move; `plain` is their matrix before start states were
-/// eliminated.
+/// Inverts the normal equations of the parameters that can move. `plain` is their matrix before start states
+/// were eliminated.
 fn inverse(matrix: &DMatrix<f64>, plain: &DMatrix<f64>, parameters: &[Parameter]) -> Option<DMatrix<f64>> {
     let count = matrix.nrows();
     let is_open = |index: &usize| parameters.get(*index).is_none_or(|own| own.lower < own.upper);

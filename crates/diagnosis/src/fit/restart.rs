@@ -1,9 +1,10 @@
-//! Start states once more, each segment for itself.
+//! Restarts of single segments from other start states.
 //!
-//! Dry friction and stops make a segment's squares uneven in its start state: the number of half swings
-//! before it sticks is a whole number. A step that serves all segments together leaves a single one behind in
-//! a hollow of its own, and that one then holds the coefficients. So each segment may begin again: where it
-//! is, where its first samples point, at rest at its mean value, or where the segment before it arrives.
+//! With dry friction and stops, a segment's sum of squares is uneven in its start state, because the number
+//! of half swings before it sticks is a whole number. A step for all segments together can leave a single one
+//! behind in a local minimum, and that one then holds back the coefficients. So each segment may begin again
+//! from several start states: its present one, the guess from its first samples, rest at its mean value, or
+//! the end of the segment before it.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Point, extended};
@@ -14,27 +15,29 @@ use crate::model::predictor::{Derivatives, Prediction, Simulator};
 use crate::noise::statistics::{mean, median};
 use dynamics::DynamicsError;
 
-/// Mean square relative to the median segment's, beyond which a segment begins again.
+/// Mean square, relative to the median over the segments, beyond which a segment begins again.
 const BEHIND: f64 = 1.25;
 
-/// Squares relative to those of the present start state beyond which another beginning is not worth a descent. Of 3,700
-/// that were tried in simulated records with friction 113 ended lower, and all but one of these had begun less than 1.6
-/// times as high; in measured records the farthest began 8 times as high and gained little.
+/// Ratio of squares to those at the present start state beyond which another beginning is not worth a
+/// descent. Of 3,700 beginnings tried in simulated records with friction, 113 ended lower, and all but one of
+/// these began less than 1.6 times as high. In measured records the farthest one began 8 times as high and
+/// gained little.
 const FAR_OFF: f64 = 5.0;
 
-/// Sampling intervals between two segments up to which one goes directly before the other.
+/// Largest time between two segments, in sampling intervals, at which they count as adjacent.
 const ADJACENT: f64 = 3.0;
 
-/// Steps tried for one start at most.
+/// Maximum number of steps for one start state.
 const STEPS: usize = 8;
 
-/// Relative decrease of the squares at which to stop, promised or made.
+/// Relative decrease of the squares at which a descent stops, promised or made.
 const SMALL: f64 = 1e-4;
 
-/// Better start states of the segments that fit worse than others, by their numbers, where there are any.
+/// Finds better start states for the segments that fit worse than others. Returns them with their segments'
+/// indices; empty if there are none.
 ///
 /// # Errors
-/// What the dynamics refuse at the point.
+/// Returns an error if the motion cannot be computed at the point.
 pub(crate) fn settle(
     data: &Data,
     hypothesis: &Hypothesis,
@@ -76,8 +79,8 @@ pub(crate) fn settle(
     Ok(better)
 }
 
-/// Position and velocity with which the segment before one arrives at its first sample; none where none goes directly before
-/// it, or where it has a hidden motion of its own.
+/// Returns position and velocity at a segment's first sample, extrapolated from the segment before it. `None`
+/// if no segment is directly before it, or if that one has a hidden motion of its own.
 fn arriving(
     simulator: &mut Simulator<'_>,
     data: &Data,
@@ -98,7 +101,8 @@ fn arriving(
     Ok(state.map(|(position, velocity)| [position + gap * velocity, *velocity]))
 }
 
-/// Levenberg–Marquardt in one segment's start state alone, from where its prediction is `at`.
+/// Minimizes the squares of one segment over its start state alone (Levenberg–Marquardt). `at` is the
+/// prediction for the first start state.
 fn descend(
     simulator: &mut Simulator<'_>,
     segment: &Segment,

@@ -1,40 +1,40 @@
-//! When a fit ends.
+//! Stopping rules of a fit.
 
 use crate::model::predictor::Prediction;
 use crate::noise::statistics::autocorrelation_time;
 
-/// How long to go on.
+/// Limits at which a fit stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stopping {
-    /// Steps tried at most.
+    /// Maximum number of steps tried.
     pub(crate) steps: usize,
-    /// Relative decrease of the squares that a step has to bring, however few samples there are.
+    /// Minimum relative decrease of the squares per step, whatever the number of samples.
     pub(crate) small: f64,
-    /// Log evidence that a step has to bring, where it is more than [`Self::small`]: half the relative decrease of the
-    /// squares, times the samples, over the residual's autocorrelation time.
+    /// Minimum log evidence per step in nats, if it requires more than [`Self::small`]: half the relative
+    /// decrease of the squares, times the number of samples, over the autocorrelation time of the residual.
     pub(crate) worth: f64,
-    /// Squares that a step has to bring, where they are more than [`Self::small`] of them.
+    /// Minimum absolute decrease of the squares per step, if it requires more than [`Self::small`].
     pub(crate) squares: f64,
-    /// How many times the smallest gain is little.
+    /// Multiple of the minimum gain up to which a gain counts as little; several in a row end the fit.
     pub(crate) little: f64,
-    /// Relative decrease of the squares that a step may promise and fail to bring, and be the last all the same: the ground
-    /// is uneven there, and shorter steps win little of what a straight one would.
+    /// Relative decrease of the squares that a failed step may have promised and still end the fit: the
+    /// squares are uneven there, and shorter steps gain little of what a straight one would.
     pub(crate) rough: f64,
-    /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
-    /// has still to grow says nothing about them.
+    /// Number of first steps that hold widths, frequencies and phases of the effects: an effect whose size
+    /// has yet to grow gives no information about them.
     pub(crate) sizes_first: usize,
-    /// Whether segments that fit much worse than others are heeded less until the others are fitted: friction that
-    /// is not yet right stops the motion half a swing too early or too late somewhere, and that one segment would
-    /// hold all coefficients.
+    /// `true` if segments that fit much worse than others get less weight until the others are fitted.
+    /// Friction that is not yet right stops the motion half a swing too early or too late somewhere, and that
+    /// one segment would hold back all coefficients.
     pub(crate) wary: bool,
-    /// Whether segments that are behind may begin again where the squares are uneven in their start states.
+    /// `true` if segments that fit badly may begin again if the squares are uneven in their start states.
     pub(crate) begins_again: bool,
-    /// Squares that a fit has to come below to be of use; one that will not do so within its steps is given up.
+    /// Sum of squares below which a fit is of use; a fit that will not reach it within its steps is given up.
     pub(crate) below: f64,
 }
 
 impl Stopping {
-    /// To rank proposals.
+    /// Limits for ranking proposals.
     pub(crate) const SEARCH: Self = Self {
         steps: 40,
         small: 1e-4,
@@ -47,13 +47,13 @@ impl Stopping {
         begins_again: true,
         below: f64::INFINITY,
     };
-    /// For an experiment that is only planned: a distance within parts of a thousand is enough. What it is measured from is known,
-    /// so that no segment has to begin again.
+    /// Limits for an experiment that is only planned: a distance within parts of a thousand is enough. The
+    /// motion that it is measured from is known, so that no segment has to begin again.
     pub(crate) const PLANNED: Self = Self { steps: 12, small: 1e-3, begins_again: false, ..Self::FINAL };
-    /// For parts held out: begun at the fit to all, there is not far to go.
+    /// Limits for held-out parts: they begin at the fit to all, which is close.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, ..Self::FINAL };
-    /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained
-    /// so little is the last of a quadratic convergence.
+    /// Limits for reported fits: half of 1e-6·N is too little to affect a probability, and a step that gained
+    /// so little is the last one of a quadratic convergence.
     pub(crate) const FINAL: Self = Self {
         steps: 60,
         small: 1e-6,
@@ -67,44 +67,46 @@ impl Stopping {
         below: f64::INFINITY,
     };
 
-    /// For what a set takes away of a gap of so many squares: a thousandth of it is enough.
+    /// Limits for the share of a gap that a set explains: a thousandth of the gap's squares is accurate
+    /// enough.
     pub(crate) fn share(gap: f64) -> Self {
         Self { squares: 1e-3 * gap, ..Self::SEARCH }
     }
 
-    /// The same where segments are heeded less: that only leads to where the fit begins in earnest.
+    /// Returns coarser limits for the phase in which segments have less weight: it only leads to the start of
+    /// the main fit.
     pub(crate) fn roughly(self) -> Self {
         Self { small: self.small.max(self.rough), ..self }
     }
 
-    /// The same for a fit that is of use only where its squares come below a bound.
+    /// Returns the same limits for a fit that is of use only if its squares fall below a bound.
     pub(crate) fn below(self, squares: f64) -> Self {
         Self { below: squares, ..self }
     }
 }
 
-/// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
+/// Damping beyond which a step is so much shorter than an undamped one that a small gain tells nothing.
 pub(crate) const SHORT: f64 = 1e-2;
 
-/// So many steps in a row that gained little, however short they were, end a fit: in an uneven valley it would go on
-/// like that until its steps are spent.
+/// Number of steps in a row with little gain, however short they were, that end a fit: in an uneven valley it
+/// would continue like that until its steps are spent.
 const CREPT: usize = 5;
 
-/// Relative decrease from which on a step is worth going on in any case.
+/// Relative decrease of the squares from which on the fit continues in any case.
 const PLENTY: f64 = 0.02;
 
-/// Damping at which steps are so short that nothing comes of them.
+/// Damping at which steps are too short to have an effect.
 const MOST_DAMPING: f64 = 1e6;
 
-/// Steps before which a fit is not given up, and how many of the last gains it is judged by.
+/// Number of steps before which a fit is not given up, and number of last gains that decide.
 const FEWEST: usize = 6;
 const LOOKED_AT: usize = 3;
 
-/// What the last steps brought.
+/// Record of the last steps' gains, from which the end of a fit is decided.
 #[derive(Debug, Clone)]
 pub(crate) struct Ending {
     effort: Stopping,
-    /// Relative decrease of the squares that a step has to bring.
+    /// Minimum relative decrease of the squares per step.
     least: f64,
     /// Relative decreases since the fit began, or began again.
     gains: Vec<f64>,
@@ -118,19 +120,19 @@ impl Ending {
         Self { effort, least: effort.small, gains: Vec::new(), small: false, crept: 0, spent: false }
     }
 
-    /// The fit begins again, in other terms.
+    /// Clears the gains because the fit begins again from other start states or weights.
     pub(crate) fn begin_again(&mut self) {
         *self = Self { least: self.least, ..Self::new(self.effort) };
     }
 
-    /// A step under some damping has decreased the squares by a part of them.
+    /// Records a step that decreased the squares. `part` is the decrease relative to the squares.
     pub(crate) fn gained(&mut self, part: f64, damping: f64, predictions: &[Prediction]) {
         if self.effort.squares > 0.0 {
             let left: f64 = predictions.iter().map(|own| own.residual.norm_squared()).sum();
             self.least = (self.effort.squares / left.max(f64::MIN_POSITIVE)).max(self.effort.small);
         } else if part < PLENTY {
-            // Samples of a residual with structure say less than so many independent ones: squares that fall by
-            // little are no evidence then.
+            // Correlated residuals hold less information than as many independent samples, so that a small
+            // decrease of the squares is then no evidence.
             let residuals: Vec<&[f64]> = predictions.iter().map(|p| p.residual.as_slice()).collect();
             let samples: usize = residuals.iter().map(|residual| residual.len()).sum();
             let evidence = 0.5 * samples as f64 / autocorrelation_time(&residuals);
@@ -141,36 +143,38 @@ impl Ending {
         self.crept = if part <= self.effort.little * self.least { self.crept + 1 } else { 0 };
     }
 
-    /// A step under some damping has failed; it had promised a part of the squares.
+    /// Records a failed step. `promised` is the decrease that it had promised, relative to the squares.
     pub(crate) fn failed(&mut self, promised: f64, damping: f64) {
-        // Shorter steps promise less still.
+        // Shorter steps promise even less.
         self.spent = damping > SHORT && promised <= self.least.max(self.effort.rough);
     }
 
-    /// Whether a step that promises this part of the squares is not worth a trial.
+    /// Returns `true` if a step that promises this part of the squares is not worth a trial.
     pub(crate) fn promises_nothing(&self, promised: f64, damping: f64) -> bool {
         damping <= SHORT && promised <= self.least
     }
 
-    /// Nothing more is to be had.
+    /// Records that no step promises a further gain.
     pub(crate) fn nothing_left(&mut self) {
         self.small = true;
     }
 
-    /// Whether the last step was no gain to speak of: what is known of the ground still holds.
+    /// Returns `true` if the last step gained too little: an earlier attempt to begin again is then still
+    /// valid.
     pub(crate) fn is_small(&self) -> bool {
         self.small
     }
 
-    /// Whether no step of any length decreases the squares by anything to speak of: it is a minimum, if an uneven one.
+    /// Returns `true` if no step of any length decreases the squares noticeably: the point is a minimum, if
+    /// an uneven one.
     pub(crate) fn is_reached(&self, damping: f64) -> bool {
         self.small || self.crept >= CREPT || self.spent || damping > MOST_DAMPING
     }
 
-    /// Whether steps like the best of the last ones do not bring the squares to where they would be of use, after so
-    /// many have been made.
+    /// Returns `true` if the remaining steps, each as good as the best of the last ones, would not reach the
+    /// bound below which the fit is of use. `steps` is the number of steps made.
     pub(crate) fn is_in_vain(&self, squares: f64, steps: usize) -> bool {
-        // Before the first step nothing was gained.
+        // Nothing was gained before the first step.
         let last = self.gains.get(self.gains.len().saturating_sub(LOOKED_AT)..).unwrap_or_default();
         let best = last.iter().copied().fold(0.0, f64::max);
         let left = self.effort.steps.saturating_sub(steps) as f64;
@@ -184,14 +188,15 @@ mod tests {
     use crate::model::predictor::Prediction;
     use nalgebra::{DMatrix, DVector};
 
-    /// Residuals of 2000 samples: alternating, which is as good as white; and slow, 50 samples a half wave.
+    /// Residuals of 2000 samples that alternate in sign: at every sample, which is as good as white, or every
+    /// half wave.
     fn residual(half_wave: usize) -> [Prediction; 1] {
         let residual =
             DVector::from_fn(2000, |at, _| if (at / half_wave).is_multiple_of(2) { 1.0 } else { -1.0 });
         [Prediction { residual, jacobian: DMatrix::zeros(0, 0) }]
     }
 
-    /// 3e-6 of the squares of 2000 samples is 0.003 of log evidence where they are independent.
+    /// 3e-6 of the squares of 2000 samples is 0.003 of log evidence if they are independent.
     #[test]
     fn a_step_is_worth_what_its_evidence_is() {
         let part = 4e-6;

@@ -1,4 +1,4 @@
-//! What is said of the measurement chain as a whole.
+//! Summary of the measurement chain.
 
 use crate::answer::{Finding, MeasuringChain};
 use crate::data::observations::Observations;
@@ -9,7 +9,7 @@ use crate::model::candidate::Candidate;
 use dynamics::{DynamicsError, Hold, KnownEffect, Nominal, NominalSimulator};
 use record::{ClockKind, Quantity};
 
-/// The nominal oscillator with the sensor's step, also where the simulator states that as an effect.
+/// Returns the nominal oscillator with the sensor's step, even if the simulator states the step as an effect.
 fn seen(simulator: &NominalSimulator) -> Result<Nominal, DynamicsError> {
     let nominal = *simulator.nominal();
     let steps = simulator.effects().iter().filter(|known| known.active.id() == "sensor_quantization");
@@ -19,7 +19,7 @@ fn seen(simulator: &NominalSimulator) -> Result<Nominal, DynamicsError> {
     }
 }
 
-/// Words on effects of the nominal simulator that no fit follows.
+/// Returns findings about effects of the nominal simulator that no fit includes.
 pub(crate) fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> Vec<Finding> {
     let followed = |known: &&KnownEffect| {
         Candidate::of(&known.active).is_some_and(|(own, _)| own.is_observed_in(quantity))
@@ -36,7 +36,8 @@ pub(crate) fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> 
         .collect()
 }
 
-/// What the input is taken to do between its samples: whoever runs the repaired simulator has to do the same.
+/// Returns the finding that states the input's hold between samples, which the repaired simulator has to use
+/// too.
 pub(crate) fn between_samples(hold: Hold) -> Finding {
     let name = match hold {
         Hold::Zero => "zero-order hold",
@@ -45,11 +46,11 @@ pub(crate) fn between_samples(hold: Hold) -> Finding {
     Finding { effect: None, text: format!("for the model, the input {} ({name})", hold.in_words()) }
 }
 
-/// What is said of the chain: clock, rate, resolution, noise, and what stamps and values show. `kept` tells which samples of
-/// each record are no outliers.
+/// Summarizes the measurement chain: clock, rate, resolution, noise, and the signatures in stamps and values.
+/// `kept` is `true` for each sample of each record that is not an outlier.
 ///
 /// # Errors
-/// A sensor's step that is no step.
+/// Returns an error if the simulator states an invalid step of the sensor.
 pub(crate) fn chain(
     records: &[Observations],
     kept: &[Vec<bool>],

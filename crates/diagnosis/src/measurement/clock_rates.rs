@@ -1,9 +1,10 @@
-//! Clocks that run at rates of their own.
+//! Correction of clocks that run at different rates.
 //!
-//! Records of one system are often stamped by clocks that differ by up to some parts in a thousand; a clock that is fast by ε
-//! makes every swing of its record longer by ε. One spring for all records then fits none of them, and whatever else can
-//! bend a duration takes the place of what is missing. So the search is made on corrected clocks too, and what comes closer stays:
-//! a law by which the frequency depends on the amplitude explains more than rates that stand in for it.
+//! Records of one system are often stamped by clocks whose rates differ by up to some parts in a thousand. A
+//! clock that is fast by ε makes every swing of its record longer by ε. No single spring then fits all
+//! records, and any effect that can change a duration takes the place of what is missing. So the search also
+//! runs on corrected clocks, and the better result is kept: a law by which the frequency depends on the
+//! amplitude explains more than rates that imitate it.
 
 use crate::answer::Finding;
 use crate::data::observations::Observations;
@@ -26,42 +27,48 @@ use dynamics::{DynamicsError, Input};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-/// Largest difference of two rates that is put down to clocks: ten times what a poor oscillator has.
+/// Largest difference of two rates that is attributed to clocks: ten times that of a poor oscillator.
 const LARGEST: f64 = 0.02;
 
-/// Log evidence that the rates have to bring beside the price of their numbers: what a flexible effect has to.
+/// Log evidence, in nats, that the rates have to gain beyond the price of their parameters: the same as for a
+/// flexible effect.
 const ENOUGH: f64 = 30.0;
 
-/// Standard errors within which the stamps leave a rate open: such rates have to bring no more than the price of their numbers.
+/// Number of standard errors within which the stamps leave a rate open. Such rates have to gain no more than
+/// the price of their parameters.
 const OPEN: f64 = 3.0;
 
-/// The sets that clocks are asked for beside: so many of the best, and all with so few effects.
+/// Sets that are refitted with clock rates: this many of the best, and all sets with at most this many
+/// effects.
 const BEST: usize = 3;
 const FEW: usize = 1;
 
-/// Turns between a fit and the rates that it leaves, at most.
+/// Maximum number of alternations between fitting a set and estimating the rates.
 const TURNS: usize = 3;
 
-/// Records on the clock of the first.
+/// Records on the clock of the first record.
 #[derive(Debug, Clone)]
 pub(crate) struct ClockRates {
     pub(crate) records: Vec<Observations>,
-    /// By how much each record's clock is fast relative to the first one's.
+    /// Relative rate by which each record's clock is fast, compared with the first one's.
     rates: Vec<f64>,
-    /// Log evidence that they have to bring.
+    /// Log evidence that the rates have to gain, in nats.
     pub(crate) price: f64,
 }
 
 impl ClockRates {
-    /// Clocks as they are stamped.
+    /// Returns the records on their clocks as stamped.
     pub(crate) fn as_stamped(records: &[Observations]) -> Self {
         Self { records: records.to_vec(), rates: vec![0.0; records.len()], price: 0.0 }
     }
 
-    /// The records without the rates that a fitted set leaves, the set that is the best with its own, and this set fitted to them;
-    /// none where no set is better with rates than the best without. What stands in for the rates of clocks leaves none itself,
-    /// and the plain law beside them is cheaper. A set that cannot be followed on other clocks is not asked. `segments` are what the
-    /// interval of the sets was joined from.
+    /// Corrects the records for the rates that fit best, and returns them with the fit of the best set on
+    /// them. `None` if no set with rates scores better than the best set without, or if a rate is too large
+    /// for a clock.
+    ///
+    /// A set that imitates clock rates leaves no rates to fit, but the plain law with rates beside it is
+    /// cheaper. A set whose fit fails on other clocks is left out. `segments` are those that the sets'
+    /// shooting interval was joined from.
     pub(crate) fn corrected(
         &self,
         segments: &Data,
@@ -102,7 +109,7 @@ impl ClockRates {
         is_clock.then_some((Self { records, rates, price }, fit))
     }
 
-    /// What is said of the rates.
+    /// Returns the finding that states the rates; `None` if all are zero.
     pub(crate) fn finding(&self) -> Option<Finding> {
         let largest = self.rates.iter().copied().fold(0.0, |known: f64, rate| known.max(rate.abs()));
         let told: Vec<String> = self.rates.iter().map(|rate| format!("{:+.4} %", 100.0 * rate)).collect();
@@ -116,10 +123,10 @@ impl ClockRates {
 }
 
 impl Data {
-    /// The same by clocks without these rates: by how much each record's is fast.
+    /// Returns the data on clocks without these rates. `rates` says by how much each record's clock is fast.
     ///
     /// # Errors
-    /// None for rates above −1: the times of an input go on rising.
+    /// None for rates above −1, since the times of an input stay in increasing order.
     fn without_rates(&self, rates: &[f64]) -> Result<Self, DynamicsError> {
         let slower = |times: &[f64], record: usize| -> Vec<f64> {
             // A record without a rate is on the clock of the first.
@@ -137,8 +144,8 @@ impl Data {
     }
 }
 
-/// Each member of the best set alone, begun where that ended, if nothing is known of it alone: without the rates it may have had no
-/// size.
+/// Fits each member of the best set alone, beginning where the set's fit ended, if it has not been fitted
+/// alone yet. Without the rates the search may have found no size for it.
 fn alone(data: &Data, best: &Fit, known: &Archive) -> Vec<Fit> {
     let members: Vec<Candidate> = best.hypothesis.counted().copied().collect();
     let without = |member: &Candidate| {
@@ -150,27 +157,28 @@ fn alone(data: &Data, best: &Fit, known: &Archive) -> Vec<Fit> {
     fit_all(data, &unknown.collect::<Vec<_>>(), |_| Stopping::SEARCH)
 }
 
-/// The time that it is where a clock that is fast by a rate shows another.
+/// Returns the true time at which a clock that is fast by a rate shows the time `shown`.
 fn true_time(shown: f64, rate: f64) -> f64 {
     shown / (1.0 + rate)
 }
 
-/// The rate of a clock that is fast by one rate on a clock that is fast by another.
+/// Combines two rates: that of a clock fast by `new` on a clock fast by `old`.
 fn both(old: f64, new: f64) -> f64 {
     (1.0 + old) * (1.0 + new) - 1.0
 }
 
-/// A set with the rates that it leaves.
+/// Set of effects fitted together with clock rates.
 struct Rated {
-    /// By how much each record's clock is fast.
+    /// Relative rate by which each record's clock is fast.
     rates: Vec<f64>,
-    /// Log evidence that they have to bring.
+    /// Log evidence that the rates have to gain, in nats.
     price: f64,
     fit: Fit,
 }
 
-/// Fits a set and the rates that it leaves in turns: on short segments, where clocks that differ by much do not lose count of the
-/// swings, and then on the interval that it was found on. None where it leaves no rates.
+/// Fits a set and the clock rates in alternation: first on short segments, where clocks that differ by much
+/// do not lose count of the swings, then on the shooting interval of the set's own fit. `None` if the
+/// residual shows no rates.
 fn rated(segments: &Data, data: &Data, found: &Fit) -> Result<Option<Rated>, DynamicsError> {
     let mut rates = vec![0.0; data.inputs.len()];
     let mut least = None;
@@ -193,7 +201,7 @@ fn rated(segments: &Data, data: &Data, found: &Fit) -> Result<Option<Rated>, Dyn
         }
     }
     let Some(price) = least else { return Ok(None) };
-    // The first clock is off as well.
+    // The first clock has an error as well.
     let open = OPEN * std::f64::consts::SQRT_2 * data.facts.rate_error;
     let price = if rates.iter().all(|rate| rate.abs() <= open) { price } else { price + ENOUGH };
     let fit = again(&data.without_rates(&rates)?, &fit)?;
@@ -204,11 +212,12 @@ fn again(data: &Data, found: &Fit) -> Result<Fit, DynamicsError> {
     fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::FINAL)
 }
 
-/// Radians of the swing by which the longest segment is shifted to see what a rate does.
+/// Phase in radians by which the longest segment is shifted to compute the effect of a rate.
 const SMALL: f64 = 1e-3;
 
-/// What the rate of each record's clock but the first one's does to the prediction: an input goes by the same clock, so that a
-/// swing which follows it shows a rate by how far it lags and not by when.
+/// Returns the change of the prediction per unit of each clock's rate, for all records but the first. The
+/// input is on the same clock: a swing that follows the input therefore shows a rate by its lag and not by
+/// its timing.
 fn by_rates(data: &Data, fit: &Fit) -> Result<Vec<Vec<f64>>, DynamicsError> {
     let rate = SMALL / (data.facts.frequency * data.longest_span()).max(1.0);
     let shifted = residuals(&data.without_rates(&vec![rate; data.inputs.len()])?, fit)?;
@@ -224,8 +233,8 @@ fn by_rates(data: &Data, fit: &Fit) -> Result<Vec<Vec<f64>>, DynamicsError> {
     Ok((1..data.inputs.len()).map(of).collect())
 }
 
-/// By how much each record's clock is fast; none where the residual does not ask for that.
-/// Beside them the price of their numbers in log evidence.
+/// Estimates by how much each record's clock is fast, and the price of these parameters in log evidence;
+/// `None` if the residual does not gain more than that price.
 fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError> {
     let records = data.inputs.len();
     let columns = by_rates(data, fit)?;
@@ -248,7 +257,7 @@ fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError
     let (before, after) = (by_segment(&residual), by_segment(&left));
     let noise = floor::floor(data, &fit.residuals).value;
     let likelihood = Likelihood::of(data, &after, noise, View::Whole);
-    // Whether they bring as much as they have to is for the search on the corrected clocks to say.
+    // The search on the corrected clocks decides whether the rates gain enough.
     let price = parameter_price(records - 1, likelihood.worth());
     if likelihood.log(&after) - likelihood.log(&before) <= price {
         return Ok(None);
@@ -268,8 +277,8 @@ mod tests {
     use record::{Clock, ClockChoice, Quantity, Record};
     use seed::Seed;
 
-    /// Two records of a system, the second by a clock that is fast by `rate`: of a body that a chirp drives, or released from 0.4 and
-    /// from half as far.
+    /// Two records of a system, the second on a clock that is fast by `rate`: of a body driven by a chirp, or
+    /// released from 0.4 and from half as far.
     fn diagnosed(effects: &[(&str, &[f64])], rate: f64, driven: bool) -> Diagnosis {
         let nominal = Nominal::new(1.0, 0.3, 400.0, 0.0).unwrap();
         let effects = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
@@ -293,7 +302,7 @@ mod tests {
         diagnose(&records, &nominal, &Settings::default(), &|| 0.0).unwrap()
     }
 
-    /// By how many per cent the second clock is said to be fast.
+    /// Percentage by which the second clock is reported to be fast.
     fn percent(answer: &Diagnosis) -> Option<f64> {
         clocks(answer)?.split("+0.0000 %, ").nth(1)?.split(" %").next()?.parse().ok()
     }
@@ -313,7 +322,7 @@ mod tests {
         }
     }
 
-    /// A spring that bends makes the small swing slower too, and within each record as well.
+    /// A nonlinear spring makes the small swing slower too, and within each record as well.
     #[test]
     fn a_frequency_that_depends_on_the_amplitude_is_no_clock() {
         let answer = diagnosed(&[("cubic_stiffness", &[40.0])], 0.0, false);
@@ -321,7 +330,7 @@ mod tests {
         assert_eq!(answer.verdict.effects, ["cubic_stiffness"]);
     }
 
-    /// A clock and a spring that bends: each lengthens the swings of the second record, and both are found.
+    /// A clock rate and a nonlinear spring both lengthen the swings of the second record, and both are found.
     #[test]
     fn a_clock_does_not_hide_in_what_stands_in_for_it() {
         let answer = diagnosed(&[("cubic_stiffness", &[40.0])], 1e-3, false);

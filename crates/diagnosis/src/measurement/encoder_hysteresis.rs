@@ -1,9 +1,10 @@
-//! What a sensor with hysteresis reads: values that stay behind the motion in either direction.
+//! Readings of a sensor with hysteresis, which lag behind the motion in either direction.
 //!
-//! A magnetic encoder keeps its last step from flickering, a counter may pass a line at another place in each direction:
-//! the reading follows only what has left it behind by a width. In a swing it is shifted against the direction of
-//! motion, by a square wave whose size does not decay; its odd harmonics tell it from friction, its phase shows
-//! as a frequency that changes towards the end of a decay.
+//! A magnetic encoder keeps its last step to avoid flicker, and a counter may pass a line at different places
+//! in the two directions: the reading follows only once the motion is ahead of it by a width. In a swing the
+//! reading is shifted against the direction of motion, by a square wave whose size does not decay. The odd
+//! harmonics of this wave tell it from friction; its phase shows as a frequency that changes toward the end
+//! of a decay.
 //!
 //! # Reference
 //! Brokate and Sprekels, Hysteresis and Phase Transitions, Springer 1996, section 2.1 (the play operator).
@@ -12,7 +13,7 @@ use crate::answer::Finding;
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 
-/// What is said where a fit has it.
+/// Returns the finding that states the hysteresis; `None` if the fit has none.
 pub(crate) fn finding(data: &Data, fit: &Fit) -> Option<Finding> {
     let width = fit.hypothesis.measurement(&data.facts, &fit.point.globals).reading?;
     let steps = width / data.facts.resolution;
@@ -22,21 +23,21 @@ pub(crate) fn finding(data: &Data, fit: &Fit) -> Option<Finding> {
     })
 }
 
-/// A reading.
+/// Reading of the sensor at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reading {
     pub(crate) value: f64,
     /// Derivative by the width.
     pub(crate) by_width: f64,
-    /// The sample that moved it there.
+    /// Index of the sample that moved the reading there.
     pub(crate) since: usize,
 }
 
-/// The reading at the first sample of a swing with some rate and curvature: behind the value by the width, or on its way
-/// there if the swing has turned round just before.
+/// Returns the reading at the first sample of a swing with some rate and curvature: behind the value by the
+/// width, or on its way there if the swing has reversed just before.
 fn first(value: f64, width: f64, rate: f64, curvature: f64) -> Reading {
     let direction = if rate == 0.0 { curvature } else { rate }.signum();
-    // Since it turned round, if that was with the curvature of now.
+    // Distance since the reversal, if the curvature was the present one since then.
     let way = if rate * curvature > 0.0 || rate == 0.0 {
         0.5 * rate * rate / curvature.abs().max(f64::MIN_POSITIVE)
     } else {
@@ -49,8 +50,8 @@ fn first(value: f64, width: f64, rate: f64, curvature: f64) -> Reading {
     }
 }
 
-/// Readings of values that begin with some rate and curvature. Where the motion turns round they stay until it has come
-/// back by twice the width.
+/// Returns the readings of values that begin with some rate and curvature. At a reversal of the motion,
+/// readings stay constant until the motion has come back by twice the width.
 pub(crate) fn readings(
     values: impl Iterator<Item = f64>,
     width: f64,
@@ -82,8 +83,8 @@ mod tests {
 
     const WIDTH: f64 = 0.02;
 
-    /// What is said of 15 s of a swing with drag, 260 samples a second, through an encoder of 4096 steps a turn with a
-    /// hysteresis of so many steps either way and noise of a tenth of a step.
+    /// Diagnosis of 15 s of a swing with drag, 260 samples a second, through an encoder of 4096 steps a turn
+    /// with a hysteresis of `steps` steps in either direction and noise of a tenth of a step.
     fn diagnosed(steps: f64) -> Diagnosis {
         let step = std::f64::consts::TAU / 4096.0;
         let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
@@ -118,7 +119,7 @@ mod tests {
         assert!(row.parameters.is_empty() && row.gap_share.is_none(), "{row:?}");
     }
 
-    /// A swing of 0.3 from some phase on.
+    /// Differences between readings and values of a swing of amplitude 0.3 that begins at some phase.
     fn swing(phase: f64) -> Vec<f64> {
         let values: Vec<f64> = (0..400).map(|i| 0.3 * (phase + 0.05 * f64::from(i)).cos()).collect();
         let (rate, curvature) = (-0.3 * phase.sin(), -0.3 * phase.cos());
@@ -126,8 +127,8 @@ mod tests {
         all.iter().zip(&values).map(|(reading, value)| reading.value - value).collect()
     }
 
-    /// Wherever a steady swing begins it is read as if it had gone on for long, but for the curvature's change on the
-    /// way from the turn.
+    /// Wherever a steady swing begins, it is read as if it had gone on for long, except for the change of the
+    /// curvature since the reversal.
     #[test]
     fn the_first_reading_is_that_of_a_swing_that_has_gone_on() {
         let long = swing(0.0);
@@ -139,7 +140,7 @@ mod tests {
         }
     }
 
-    /// Third and fifth harmonic of a square wave of the width: 4/(3π) and 4/(5π) of it.
+    /// The third and fifth harmonic of a square wave are 4/(3π) and 4/(5π) of its size, the width.
     #[test]
     fn a_swing_is_shifted_against_its_motion() {
         let count = 4000;

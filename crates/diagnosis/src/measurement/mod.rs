@@ -1,4 +1,4 @@
-//! What stamps and values show of the measurement chain before any physics.
+//! Measurement chain: its signatures in stamps and values, outliers, clock rates and encoder hysteresis.
 
 pub(crate) mod chain;
 pub(crate) mod clock_rates;

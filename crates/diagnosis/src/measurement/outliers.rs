@@ -1,51 +1,54 @@
-//! Isolated samples that are wrong, told from the samples around them.
+//! Detection of isolated wrong samples by comparison with the samples around them.
 
 use crate::data::observations::Observations;
 use crate::noise::statistics::{median, normal_above};
 
-/// Probability with which Gaussian noise alone makes a record have an outlier.
+/// Probability that Gaussian noise alone produces an outlier in a record.
 const FALSE_ALARM: f64 = 1e-3;
 
 /// Ratio of a Gaussian's standard deviation to the median of its absolute value.
 const OF_MEDIAN: f64 = 1.4826;
 
-/// Samples that share a scale with their neighbors: noise may grow with speed, and a fast mode may ring down.
+/// Number of samples that share a noise scale with their neighbors: noise may grow with speed, and a fast
+/// mode may ring down.
 const BLOCK: usize = 64;
 
-/// Largest spacing of a neighborhood, as the product of its distances over an even one's: one sample lost in the middle
-/// makes it 3, and the cubic's own error grows in proportion.
+/// Largest spacing of a neighborhood, as the product of its distances over that of an even one. One sample
+/// lost in the middle makes it 3; the cubic's own error grows in proportion.
 const WIDE: f64 = 4.0;
 
-/// Distance at double spacing over that at single spacing, at most. A wrong sample is off by as much from
-/// near neighbors as from far ones (1); a bend of the motion twice as much, a curve more.
+/// Largest ratio of the distance at double spacing to that at single spacing. For a wrong sample both are
+/// equal (1); for a bend of the motion the ratio is 2, for a curve more.
 const BEND: f64 = 1.35;
 
-/// Distance of a direct neighbor, in its own noise, over that of the sample itself, at most. A wrong sample
-/// moves the neighbors' distances by 2/3 of its error; on both sides of a step they are as large as each
-/// other.
+/// Largest ratio of a direct neighbor's distance, in its own noise, to that of the sample itself. A wrong
+/// sample moves the neighbors' distances by 2/3 of its error; on both sides of a step the distances are
+/// equal.
 const STEP: f64 = 0.85;
 
-/// Rate beyond which outliers are no exceptions, and by how many standard deviations of a count it has to be exceeded: of few samples
-/// more are wrong by chance.
+/// Share of outliers beyond which they are no exceptions, and the number of standard deviations of a count by
+/// which it must be exceeded, since a larger share of few samples may be wrong by chance.
 const MOST: f64 = 0.02;
 const BY_CHANCE: f64 = 3.0;
 
-/// Rounds of leaving out: a wrong sample hides another within its neighborhood.
+/// Maximum number of rounds, because a wrong sample hides another within its neighborhood.
 const ROUNDS: usize = 3;
 
-/// Which samples are kept: isolated ones that the motion around them does not support are left out of every fit.
+/// Marks the samples to keep. Isolated samples that the motion around them does not support are left out of
+/// every fit.
 ///
-/// A sample is compared with the cubic through its four neighbors on the believed times, in units of what noise
-/// makes of that distance. The noise is the median absolute distance (times 1.4826, the Gaussian's ratio), of
-/// the whole record or of the samples around if that is larger; of a sensor with steps it is no less than a
-/// step's rounding. A sample is wrong where the distance exceeds what one of all samples reaches by chance
-/// with a probability of 0.001, plus what rounding can add to it at most. Besides, it has to be isolated:
-/// bends (end stops, reversals under friction) grow with the spacing of the neighbors, steps show on both
-/// sides.
+/// A sample is compared with the cubic through its four neighbors, at the times of the chosen clock, in units
+/// of the noise of that distance. The noise is the median absolute distance (times 1.4826, the Gaussian's
+/// ratio) of the whole record, or of the samples around if that is larger; for a sensor with steps it is at
+/// least the rounding of a step. A sample is wrong if the distance exceeds the limit that any of all samples
+/// reaches by chance with a probability of 0.001, plus the largest distance that rounding can add. It also
+/// has to be isolated: bends (end stops, reversals under friction) grow with the spacing of the neighbors,
+/// and steps show on both sides.
 ///
-/// Where bursts lost samples, the places of samples within a burst are guesses, and none is called wrong.
+/// If bursts have lost samples, the places of samples within a burst are guesses, and no sample is called
+/// wrong.
 ///
-/// Time is linear in the number of samples.
+/// The time is linear in the number of samples.
 pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     let everything = vec![true; observations.len()];
     if observations.stamps.repeated > 0 && observations.stamps.lost > 0 {
@@ -68,13 +71,13 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     if dropped > most + BY_CHANCE * most.sqrt() { everything } else { kept }
 }
 
-/// Standard deviation of the white noise of samples, from their distances to their neighbors; rounding is part of it,
-/// also where the steps are so coarse that most neighbors agree.
+/// Returns the standard deviation of the white noise of samples, from their distances to their neighbors. It
+/// includes rounding, even if the steps are so coarse that most neighbors agree.
 pub(crate) fn white_noise(observations: &Observations, kept: &[bool]) -> f64 {
     let points = points(observations, kept);
     let sizes: Vec<f64> =
         distances(&points, 1, interval(observations)).iter().flatten().map(Distance::in_noise).collect();
-    // Readings without a stated resolution are not rounded.
+    // Readings without a stated resolution count as not rounded.
     let rounding = observations.resolution.map_or(0.0, |step| step / 12.0_f64.sqrt());
     (OF_MEDIAN * median(&sizes)).max(rounding)
 }
@@ -98,9 +101,9 @@ fn interval(observations: &Observations) -> f64 {
 #[derive(Debug, Clone, Copy)]
 struct Distance {
     value: f64,
-    /// Its standard deviation under white noise of 1.
+    /// Standard deviation of the distance for white noise of 1.
     spread: f64,
-    /// What rounding by half a step can make of it at most, for a step of 1.
+    /// Largest distance that rounding by half a step can cause, for a step of 1.
     rounding: f64,
 }
 
@@ -110,8 +113,8 @@ impl Distance {
     }
 }
 
-/// Distances of all samples from cubics through the four neighbors once and twice `spacing` away; `None` near
-/// the ends and where samples are missing in between.
+/// Returns the distances of all samples from cubics through the four neighbors once and twice `spacing` away;
+/// `None` near the ends and where samples in between are missing.
 fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Distance>> {
     let even = 4.0 * (spacing as f64 * interval).powi(4);
     let at = |index: Option<usize>| index.and_then(|index| points.get(index)).copied();
@@ -132,7 +135,7 @@ fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Dist
             for (own, node) in nodes.iter().enumerate() {
                 let others = nodes.iter().enumerate().filter(|(other, _)| *other != own);
                 let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
-                // Differences of values: those at rest lie on the cubic exactly.
+                // With differences of values, samples at rest lie on the cubic exactly.
                 sum += weight * (node.2 - value);
                 squares += weight * weight;
                 sizes += weight.abs();
@@ -146,13 +149,13 @@ fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Dist
         .collect()
 }
 
-/// Indices of samples that are wrong, given those that are known to be.
+/// Returns the indices of further wrong samples, given the samples that are still kept.
 fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
     let points = points(observations, kept);
     let interval = interval(observations);
     let near = distances(&points, 1, interval);
     let far = distances(&points, 2, interval);
-    // Readings without a stated resolution are not rounded.
+    // Readings without a stated resolution count as not rounded.
     let step = observations.resolution.unwrap_or(0.0);
     let sizes: Vec<f64> = near.iter().flatten().map(Distance::in_noise).collect();
     let whole = (OF_MEDIAN * median(&sizes)).max(step / 12.0_f64.sqrt());
@@ -168,7 +171,7 @@ fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
     };
     let limit = normal_above(0.5 * FALSE_ALARM / points.len().max(1) as f64);
     let beside = |index: Option<usize>| {
-        // What has no neighbor is not far from it.
+        // A missing neighbor counts as a distance of zero.
         index.and_then(|index| near.get(index).copied().flatten()).map_or(0.0, |distance| distance.in_noise())
     };
     let mut wrong = Vec::new();
@@ -220,7 +223,8 @@ mod tests {
         kept(&observed(times, values)).iter().filter(|kept| !**kept).count()
     }
 
-    /// 0.001 of all records by design; the expectation is 0.4, and more than 3 come by chance once in a thousand times.
+    /// By design 0.001 of all records; the expectation is 0.4, and more than 3 occur by chance once in a
+    /// thousand times.
     #[test]
     fn noise_alone_has_none() {
         let mut records = 0;
@@ -246,7 +250,7 @@ mod tests {
         }
     }
 
-    /// Steps from far below the noise to far above it, down to a motion that ends within a step.
+    /// Steps from far below the noise to far above it, up to a motion that ends within a step.
     #[test]
     fn rounding_has_none() {
         for (seed, part) in [0.1, 0.7, 1.0, 2.0, 3.0, 5.0, 20.0].into_iter().enumerate() {
@@ -258,7 +262,8 @@ mod tests {
         }
     }
 
-    /// Stops from soft to as hard as bends the motion within a sample; friction that reverses and sticks.
+    /// Stops from soft to so hard that they bend the motion within a sample; friction that reverses and
+    /// sticks.
     #[test]
     fn bends_are_none() {
         let omega: f64 = 20.0;
@@ -278,7 +283,7 @@ mod tests {
         }
     }
 
-    /// Samples lost in stretches, single stamps rounded: what lies beyond a gap is no neighbor.
+    /// Samples lost in stretches, single stamps rounded: a sample beyond a gap is no neighbor.
     #[test]
     fn gaps_and_scattered_stamps_make_none() {
         for (seed, stretch) in [1, 2, 4, 8].into_iter().enumerate() {
@@ -297,8 +302,9 @@ mod tests {
         }
     }
 
-    /// One sample of a hundred is wrong by ten times the noise. Of 6500 samples the limit lies at 5.3
-    /// standard deviations of a distance, 7.3 times the noise. A sample is never blamed for its neighbor.
+    /// One sample of a hundred is wrong by ten times the noise. For 6500 samples the limit lies at 5.3
+    /// standard deviations of a distance, 7.3 times the noise. A sample is never marked because of its
+    /// neighbor's error.
     #[test]
     fn wrong_samples_are_found_and_no_others() {
         let times = even(6500);
@@ -322,7 +328,7 @@ mod tests {
         assert_eq!(blamed, 0);
     }
 
-    /// Of 250 samples seven are wrong by chance where one in fifty is; thirty are no exceptions.
+    /// At a share of one in fifty, seven of 250 samples are wrong by chance; thirty are no exceptions.
     #[test]
     fn of_few_samples_more_may_be_wrong() {
         let times = even(250);
@@ -343,7 +349,7 @@ mod tests {
         assert!((found / NOISE - 1.0).abs() < 0.05, "{found}");
     }
 
-    /// Most neighbors agree, and the median distance is nothing.
+    /// Most neighbors agree, and the median distance is zero.
     #[test]
     fn the_noise_of_coarse_steps_is_their_rounding() {
         let times = even(6500);

@@ -1,4 +1,4 @@
-//! What stamps and values show of the measuring chain before any physics.
+//! Signatures of the measurement chain in stamps and values, which need no physics.
 
 use crate::answer::Finding;
 use crate::data::observations::Observations;
@@ -11,12 +11,12 @@ use crate::noise::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
 use record::{ClockKind, StampStatistics, counted, two_digits};
 
-/// Equal samples in a row at an end of the range that make a flat top, and flat tops that no swing without a
-/// stop shows.
+/// Number of equal samples in a row at an end of the range that make a flat top, and the number of flat tops
+/// that no swing without a stop shows.
 const FLAT: usize = 3;
 const LEAST_RUNS: usize = 3;
 
-/// What stamps and values of a record show.
+/// Returns findings about the stamps and values of a record.
 pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nominal) -> Vec<Finding> {
     let mut findings = Vec::new();
     let stamps = &observations.stamps;
@@ -63,10 +63,10 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
     findings
 }
 
-/// Part of the samples that belong to no segment, from which on it is said.
+/// Share of the samples outside all segments above which a finding is reported.
 const UNSEEN: f64 = 0.01;
 
-/// Samples that no segment has: a swing that has died out is not looked at.
+/// Returns a finding about samples that no segment contains: a swing that has died out is not analyzed.
 pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<Finding> {
     let all = kept.iter().flatten().filter(|kept| **kept).count();
     let unseen = all.saturating_sub(in_segments);
@@ -80,7 +80,8 @@ pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<F
 
 const UNDRIVEN: &str = "; the input is missing there too, and what it did meanwhile stays unexplained";
 
-/// Whether the stamps tell that samples are missing, and those of an input with them.
+/// Returns a finding if the stamps show that samples are missing. `driven` adds that the input is missing
+/// there too.
 fn dropouts(stamps: &StampStatistics, driven: bool) -> Option<Finding> {
     let (gaps, lost) = (counted(stamps.gaps, "gap"), counted(stamps.lost, "sample"));
     let text = match (stamps.gaps, stamps.lost) {
@@ -93,32 +94,33 @@ fn dropouts(stamps: &StampStatistics, driven: bool) -> Option<Finding> {
     Some(Finding { effect: Some("dropouts"), text })
 }
 
-/// Standard errors from which on stamps bend: Student's t with the nine degrees of freedom of twelve stretches less the
-/// parabola's three exceeds it in one of 10,000 cases, either way.
+/// Number of standard errors from which stamps are said to bend. Student's t with nine degrees of freedom
+/// (twelve stretches less the parabola's three) exceeds it in one of 10,000 cases, in either direction.
 const DRIFTS: f64 = 6.594;
 
-/// Intervals from its mean by which the last sample of a burst waits at most: one half, and half of that for
-/// what else scatters.
+/// Largest deviation from its mean, in sampling intervals, of the wait of a burst's last sample: one half,
+/// plus half of that for other scatter.
 const WAITS: f64 = 0.75;
 
-/// Probability with which values that say nothing of the clock are said to prefer one.
+/// Probability with which values without information about the clock are said to prefer one.
 const PREFERS_BY_CHANCE: f64 = 0.01;
 
-/// Part of the noise variance from which on what adds to it is named.
+/// Share of the noise variance above which a contribution to it is reported.
 const LARGE: f64 = 0.05;
 
-/// Size over the whole record, in units of the noise, from which on it is named too: ten times the noise, at which
-/// every effect of the body's is expected to be found.
+/// Size over the whole record, in units of the noise, above which a contribution is reported too. At ten
+/// times the noise every effect of the body is expected to be found.
 const VISIBLE: f64 = 10.0;
 
-/// Whether what adds a part to the noise variance is named.
+/// Returns `true` if a contribution with this share of the noise variance is reported.
 fn matters(share: f64, samples: usize) -> bool {
     share > LARGE || share * samples as f64 > VISIBLE * VISIBLE
 }
 
-/// Errors of the stamps that matter: those that move the values, at their root mean square speed, by more
-/// than a part of the noise variance, or by ten times the noise in all. Scatter is one where the values
-/// contradict it, drift where the stamps bend away from an even clock by more than their scatter explains.
+/// Returns findings about errors of the stamps that matter: those that move the values, at their RMS speed,
+/// by more than a part of the noise variance, or by ten times the noise in all. Scatter is reported if the
+/// values contradict it, drift if the stamps bend away from an even clock by more than their scatter
+/// explains.
 fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> {
     let stamps = &observations.stamps;
     let noise = white_noise(observations, kept);
@@ -126,10 +128,11 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
     let mut findings = Vec::new();
     // Stamps that are not rounded have no step.
     let rounding = stamps.rounding_s.unwrap_or(0.0);
-    // Rounding moves a stamp by half its step, so that second differences over √6 stay below 0.82 steps.
+    // Rounding moves a stamp by up to half its step, so that second differences over √6 stay below 0.82
+    // steps.
     let scatter = (stamps.scatter_s.powi(2) - rounding * rounding / 12.0).max(0.0);
     let share = scatter * per_time;
-    // Second differences of N stamps are worth N/1.94 independent ones; their squares scatter by √(2·1.94/N).
+    // Second differences of N stamps count as N/1.94 independent ones; their squares scatter by √(2·1.94/N).
     let error = (2.0 * 1.94 / observations.len() as f64).sqrt();
     if stamps.scatter_s > rounding
         && matters(share * (1.0 - normal_above(PREFERS_BY_CHANCE) * error), observations.len())
@@ -147,8 +150,8 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
         });
     }
     let share = stamps.bend_s * stamps.bend_s * per_time;
-    // Samples miscounted in bursts, and a host that is late, would bend the stamps too: of a burst, all that
-    // is left may be its last sample's wait for up to one interval.
+    // Miscounted samples in bursts, or a late host, would bend the stamps too. So in bursts the bend may
+    // leave no more than the wait of the last sample, which is up to one interval.
     let waits = stamps.left_by_bend_s * observations.sample_rate_hz <= WAITS;
     if (stamps.repeated == 0 || stamps.lost == 0 && waits)
         && stamps.bend_standard_errors > DRIFTS
@@ -169,7 +172,8 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
     findings
 }
 
-/// Mean square speed, from differences over two sampling intervals; what noise adds to it is taken off.
+/// Returns the mean square speed, from differences over two sampling intervals, less the noise's
+/// contribution.
 fn mean_square_speed(observations: &Observations, kept: &[bool], noise: f64) -> f64 {
     let samples = observations.times_s.iter().zip(&observations.values).zip(kept);
     let kept: Vec<(f64, f64)> =
@@ -186,10 +190,11 @@ fn mean_square_speed(observations: &Observations, kept: &[bool], noise: f64) -> 
     mean(&squares).max(0.0)
 }
 
-/// Part by which frequencies of records differ that are said to differ.
+/// Relative difference above which frequencies of records are said to differ.
 const APART: f64 = 0.1;
 
-/// Whether the records swing at frequencies of their own. Amplitude can do that, and so can records of several systems.
+/// Returns a finding if the records swing at different frequencies. A difference in amplitude can cause that,
+/// and so can records of several systems.
 pub(crate) fn frequencies(records: &[Observations]) -> Option<Finding> {
     let free = records.iter().filter(|record| record.input.is_none());
     let found: Vec<f64> = free
@@ -207,7 +212,7 @@ pub(crate) fn frequencies(records: &[Observations]) -> Option<Finding> {
     })
 }
 
-/// Runs of equal values at an end of the range.
+/// Returns the text about runs of equal values at an end of the range; `None` if there are too few.
 fn flat_top(values: &[f64]) -> Option<String> {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -225,7 +230,8 @@ fn flat_top(values: &[f64]) -> Option<String> {
     })
 }
 
-/// Whether the rounding to the sensor's steps is a part of the noise, and the nominal simulator does not know of it.
+/// Returns a finding if rounding to the sensor's steps is a part of the noise that the nominal simulator does
+/// not state.
 pub(crate) fn quantization(data: &Data, noise: f64, nominal: &Nominal) -> Option<Finding> {
     let step = data.resolution?;
     let share = step * step / 12.0 / (noise * noise);
@@ -239,8 +245,9 @@ pub(crate) fn quantization(data: &Data, noise: f64, nominal: &Nominal) -> Option
     })
 }
 
-/// Whether the noise grows with speed, as errors of the stamps make it: standard errors by which the white part's
-/// square is larger where the speed is above its median than below, at least three quarters more.
+/// Returns a finding if the noise grows with speed, as errors of the stamps cause it. The white part's square
+/// has to be larger at speeds above the median than below, by at least three quarters and by enough standard
+/// errors.
 pub(crate) fn noise_with_speed(data: &Data, fit: &Fit) -> Option<Finding> {
     let (mut slow, mut fast) = (Vec::new(), Vec::new());
     let mut speeds = Vec::new();
@@ -263,9 +270,9 @@ pub(crate) fn noise_with_speed(data: &Data, fit: &Fit) -> Option<Finding> {
     let (quick, quick_error) = mean_and_error(&fast);
     let (calm, calm_error) = mean_and_error(&slow);
     let z = (quick - calm) / quick_error.hypot(calm_error);
-    // Readings without a stated resolution are not rounded.
+    // Readings without a stated resolution count as not rounded.
     let quantum = data.resolution.map_or(0.0, |step| step * step / 12.0);
-    // Second differences of white noise are correlated; a factor of 1.5 in the error covers it.
+    // Second differences of white noise are correlated; a factor of 1.5 in the error accounts for it.
     (z > 1.5 * normal_above(1e-4) && quick > 1.75 * calm && quick > 2.0 * quantum).then(|| Finding {
         effect: Some("timestamp_jitter"),
         text: format!(
@@ -288,7 +295,7 @@ mod tests {
 
     const NOISE: f64 = 1e-3;
 
-    /// Ids named for 25 s of a swing whose stamps go through a map of true time and a standard normal number;
+    /// Ids found in 25 s of a swing. `stamp` maps the true time and a standard normal number to a stamp;
     /// `None` loses the sample.
     fn named(seed: u64, stamp: impl Fn(f64, f64) -> Option<f64>) -> Vec<&'static str> {
         let mut generator = Seed::new(seed).child("chain").generator();
@@ -310,8 +317,8 @@ mod tests {
         findings(&observations, &kept, &nominal).iter().filter_map(|finding| finding.effect).collect()
     }
 
-    /// The root mean square speed of that swing is about 4.4 rad/s: a scatter of 0.1 ms, 3 % of a sampling
-    /// interval, makes 0.44 times the noise, 19 % of its variance; 0.02 ms make 1 %.
+    /// The RMS speed of that swing is about 4.4 rad/s: a scatter of 0.1 ms, 3 % of a sampling interval, makes
+    /// 0.44 times the noise, 19 % of its variance; 0.02 ms make 1 %.
     #[test]
     fn scatter_of_stamps_is_named_where_it_moves_the_values() {
         for seed in 0..5 {
@@ -346,7 +353,7 @@ mod tests {
         assert!(said(Some(values.clone())) && !said(None));
     }
 
-    /// A rate that changes by 2·10⁻⁵ a second bends 25 s of stamps by 0.47 ms, root mean square: twice the noise.
+    /// A rate that changes by 2·10⁻⁵ a second bends 25 s of stamps by 0.47 ms (RMS): twice the noise.
     #[test]
     fn a_drifting_clock_is_named_where_it_moves_the_values() {
         let drift = |change: f64| move |time: f64| time + 0.5 * change * time * time;

@@ -1,4 +1,4 @@
-//! A handle on an effect that can be missing from a simulator and be fitted.
+//! Handle on an effect that a simulator may lack and a fit can add.
 
 use crate::model::candidates::CandidateLaw;
 pub(crate) use crate::model::candidates::{EvidenceClass, MainMode, Parameter};
@@ -7,9 +7,9 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::ops::Deref;
 
-/// An effect that can be fitted: its [`CandidateLaw`], and its place in the registry.
+/// Effect that can be fitted: a handle on its [`CandidateLaw`].
 ///
-/// Two candidates are equal where their effects are; there is one law for each effect.
+/// Two candidates are equal if their effects are; there is one law for each effect.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate(&'static dyn CandidateLaw);
 
@@ -42,22 +42,22 @@ impl fmt::Debug for Candidate {
 }
 
 impl Candidate {
-    /// The handle on a law.
+    /// Creates the handle on a law.
     pub(crate) const fn new(law: &'static dyn CandidateLaw) -> Self {
         Self(law)
     }
 
-    /// The public id.
+    /// Returns the public id.
     pub(crate) fn id(self) -> &'static str {
         self.effect().id()
     }
 
-    /// Its part of a gap budget.
+    /// Returns the class of the gap budget that the effect belongs to.
     pub(crate) fn class(self) -> Class {
         self.effect().description().class
     }
 
-    /// The effect in the system; none for one of the measuring chain.
+    /// Returns the effect of the system; `None` for an effect of the measurement chain.
     pub(crate) fn system(self) -> Option<SystemEffect> {
         match self.effect() {
             Effect::System(effect) => Some(effect),
@@ -65,12 +65,13 @@ impl Candidate {
         }
     }
 
-    /// The candidate that it is at one of its own sizes. A set never holds both.
+    /// Returns the candidate that this one becomes at one of its own sizes. A set never holds both.
     pub(crate) fn generalizes(self) -> Option<Self> {
         self.0.generalizes().map(Self)
     }
 
-    /// The simpler candidate that it tends to at an end of its shape, with the same first parameter.
+    /// Returns the simpler candidate that this one tends to at an end of its shape, with the same first
+    /// parameter.
     pub(crate) fn tends_to(self) -> Option<Self> {
         self.0.tends_to().map(Self)
     }

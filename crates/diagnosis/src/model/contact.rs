@@ -1,6 +1,6 @@
-//! How far a contact that bends before it slides has been bent, where a segment begins in the middle of a swing.
+//! Deflection of a contact that bends before it slides, at the start of a segment in the middle of a swing.
 
-/// The hidden state of Dahl's law, and its derivatives.
+/// Hidden state of Dahl's law and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bent {
     pub(crate) z: f64,
@@ -9,18 +9,18 @@ pub(crate) struct Bent {
     pub(crate) by_displacement: f64,
 }
 
-/// The hidden state of Dahl's law in a steady swing, at a deflection and a velocity over the frequency, both in the unit
-/// of the displacement δ.
+/// Computes the hidden state z of Dahl's law in a steady swing, at a deflection and a velocity over the
+/// frequency, both in the unit of the displacement δ.
 ///
-/// From a reversal on, z = s − (s − z₀)·exp(−path/δ) with the direction s; in a steady swing of amplitude A it runs
-/// between ±tanh(A/δ).
+/// From a reversal on, z = s − (s − z₀)·exp(−path/δ) with the direction s; in a steady swing of amplitude A
+/// it runs between ±tanh(A/δ).
 pub(crate) fn bent(deflection: f64, quadrature: f64, displacement: f64) -> Bent {
     let amplitude = deflection.hypot(quadrature);
     let direction = if quadrature < 0.0 { -1.0 } else { 1.0 };
     let path = (amplitude + direction * deflection).max(0.0) / displacement;
     let reversal = (amplitude / displacement).tanh();
     let left = (-path).exp();
-    // By the amplitude over δ, and by the path over δ.
+    // Derivatives by the amplitude over δ, and by the path over δ.
     let (by_reversal, by_path) = (-(1.0 - reversal * reversal) * left, (1.0 + reversal) * left);
     let cosine = if amplitude > 0.0 { deflection / amplitude } else { 0.0 };
     let sine = if amplitude > 0.0 { quadrature / amplitude } else { 0.0 };
@@ -49,7 +49,7 @@ mod tests {
         }
     }
 
-    /// At a reversal it is the same on either side, and at rest nothing is bent.
+    /// At a reversal the state is the same on either side, and at rest nothing is bent.
     #[test]
     fn a_reversal_is_no_jump() {
         let (before, after) = (bent(-0.3, -1e-12, 0.1).z, bent(-0.3, 1e-12, 0.1).z);

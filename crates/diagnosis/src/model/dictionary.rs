@@ -1,4 +1,4 @@
-//! What every candidate would add to the observed values, to first order, at a fit.
+//! Dictionary of the first-order changes of the observed values by every candidate, at a fit.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
@@ -15,18 +15,18 @@ use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 use std::ops::Range;
 
-/// A candidate at one shape: columns whose coefficients are its linear parameters.
+/// Candidate at one shape: columns whose coefficients are its linear parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) candidate: Candidate,
-    /// Parameters that the columns are computed at, as the fit moves them.
+    /// Fit parameters at which the columns are computed.
     shape: Vec<f64>,
     pub(crate) columns: Range<usize>,
-    /// Whether the coefficients cannot be negative.
+    /// `true` if the coefficients cannot be negative.
     positive: bool,
 }
 
-/// All entries at a fit, projected on what the fit may not move.
+/// All entries at a fit, projected on the complement of what the fit can still move.
 #[derive(Debug, Clone)]
 pub(crate) struct Dictionary {
     pub(crate) entries: Vec<Entry>,
@@ -36,17 +36,17 @@ pub(crate) struct Dictionary {
     pub(crate) products: DMatrix<f64>,
     /// Products of the columns with the projected residual.
     pub(crate) scores: DVector<f64>,
-    /// Candidates that no columns stand for, with parameters to begin at and about what they would take away.
+    /// Candidates without columns, with parameters at which a fit begins and the approximate gain in squares.
     pub(crate) further: Vec<(Candidate, Vec<f64>, f64)>,
-    /// How many frequencies the lines of the residual were chosen from.
+    /// Number of frequencies that the lines of the residual were chosen from.
     pub(crate) frequencies: f64,
 }
 
-/// Part of a column's length that has to be left after the projection: what calibration and start states imitate to so
-/// many digits cannot be seen in these records, and what is left of it is the linearization's error.
+/// Part of a column's norm that has to remain after the projection. If calibration and start states imitate a
+/// column to this precision, the records cannot show it, and the remainder is the error of the linearization.
 pub(crate) const INVISIBLE: f64 = 1e-4;
 
-/// What a set of entries would take away.
+/// First-order gain of a set of entries.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gain {
     pub(crate) entries: Vec<usize>,
@@ -56,13 +56,13 @@ pub(crate) struct Gain {
     pub(crate) coefficients: Vec<f64>,
 }
 
-/// What the residual of a fit shows.
+/// Residual of a fit, in the form that candidates search for lines.
 struct Residual<'a> {
     data: &'a Data,
     residuals: &'a [&'a [f64]],
     paths: &'a [Path],
     projection: &'a Projection,
-    /// Residual of all segments, projected on what the fit may not move.
+    /// Residual of all segments, projected on the complement of what the fit can still move.
     projected: &'a DMatrix<f64>,
 }
 
@@ -91,7 +91,7 @@ impl Lines for Residual<'_> {
     }
 }
 
-/// The columns of a candidate at a shape, on one path.
+/// Computes the columns of a candidate at a shape, on one path.
 fn columns(
     candidate: Candidate,
     shape: &[f64],
@@ -105,7 +105,7 @@ fn columns(
 }
 
 impl Dictionary {
-    /// Every candidate that is not in the fit's hypothesis.
+    /// Builds the dictionary of the given candidates at a fit, without those in the fit's hypothesis.
     pub(crate) fn at(data: &Data, fit: &Fit, candidates: &[Candidate]) -> Result<Self, DynamicsError> {
         let projection = Projection::at(data, fit)?;
         let paths = Path::of(data, fit)?;
@@ -165,27 +165,27 @@ impl Dictionary {
         }
     }
 
-    /// The candidate of a gain's first entry.
+    /// Returns the candidate of a gain's first entry.
     pub(crate) fn candidate(&self, gain: &Gain) -> Option<Candidate> {
         gain.entries.first().and_then(|&index| self.entries.get(index)).map(|entry| entry.candidate)
     }
 
-    /// How many frequencies a gain is the best of: 1 for entries without one.
+    /// Returns the number of frequencies that a gain is the best of: 1 for entries without a frequency.
     pub(crate) fn looked(&self, gain: &Gain) -> f64 {
         let mut entries = gain.entries.iter().filter_map(|&index| self.entries.get(index));
         let by_frequency = entries.any(|entry| entry.candidate.is_chosen_by_frequency());
         if by_frequency { self.frequencies } else { 1.0 }
     }
 
-    /// Joint gain of some entries, their sizes not negative where the law says so; `None` where an entry is
-    /// left without its size.
+    /// Returns the joint gain of some entries, with non-negative sizes if their laws require it; `None` if an
+    /// entry loses its size.
     pub(crate) fn gain(&self, entries: &[usize]) -> Option<Gain> {
         let chosen: Vec<&Entry> = entries.iter().filter_map(|index| self.entries.get(*index)).collect();
         let all: Vec<(usize, bool)> = chosen
             .iter()
             .flat_map(|entry| entry.columns.clone().map(|column| (column, entry.positive)))
             .collect();
-        // A size that comes out negative is zero, and the others are solved for anew.
+        // A size that comes out negative is set to zero, and the others are solved for again.
         let visible = |at: &usize| all.get(*at).is_some_and(|own| entry(&self.products, own.0, own.0) > 0.0);
         let mut kept: Vec<usize> = (0..all.len()).filter(visible).collect();
         let solution = loop {
@@ -199,7 +199,7 @@ impl Dictionary {
             let solution = solve(&products, &scores)?;
             let below = |(place, at): (usize, &usize)| {
                 let positive = all.get(*at).is_some_and(|own| own.1);
-                // A coefficient for every column.
+                // There is a coefficient for every column.
                 let value = solution.get(place).copied().unwrap_or(0.0);
                 (positive && value < 0.0).then_some((place, value * entry(&products, place, place).sqrt()))
             };
@@ -221,7 +221,7 @@ impl Dictionary {
         for entry in chosen {
             let own = coefficients.get(from..from + entry.columns.len())?;
             from += own.len();
-            // The last column is the one without which the candidate would be another.
+            // The last column is the one that makes the candidate differ from a simpler one.
             if own.last().is_none_or(|size| *size == 0.0) {
                 return None;
             }
@@ -233,35 +233,36 @@ impl Dictionary {
         })
     }
 
-    /// The parameters that an entry's coefficients stand for.
+    /// Returns the fit parameters that an entry's coefficients stand for.
     pub(crate) fn parameters(&self, entry: usize, coefficients: &[f64]) -> Vec<f64> {
         let entry = self.entries.get(entry);
-        // An entry that is not there has no parameters.
+        // A missing entry has no parameters.
         entry.map(|entry| entry.candidate.linear_parameters(&entry.shape, coefficients)).unwrap_or_default()
     }
 }
 
-/// Where the motion is at a sample: what a torque or a sensor without a name may depend on.
+/// State of the motion at a sample, on which a torque or a sensor error without a name may depend.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment {
     pub(crate) position: f64,
     pub(crate) velocity: f64,
     pub(crate) time: f64,
-    /// Torque of the input; 0 without one.
+    /// Torque of the input; 0 without an input.
     pub(crate) input: f64,
 }
 
-/// A function of the motion.
+/// Function of the motion.
 pub(crate) type Smooth = Box<dyn Fn(Moment) -> f64 + Sync>;
 
-/// What functions of the motion do to what is observed: as torques, or added to the sensor's values.
+/// Place at which functions of the motion act: as torques, or added to the sensor's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Acting {
     Torque,
     Sensor,
 }
 
-/// The change of what is observed by functions of the motion, not projected: for what has no name.
+/// Returns the change of the observed values by functions of the motion, not projected; used for effects
+/// without a name.
 pub(crate) fn columns_of(
     paths: &[Path],
     quantity: Quantity,

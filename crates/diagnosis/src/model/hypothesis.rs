@@ -1,4 +1,4 @@
-//! A hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
+//! Hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
 
 use crate::data::scales::Scales;
 use crate::model::candidate::{Candidate, EvidenceClass, Parameter};
@@ -9,14 +9,14 @@ use dynamics::{
 };
 use record::Quantity;
 
-/// A nominal coefficient that calibration may move.
+/// Number that calibration may move: a nominal coefficient, or a parameter of a known effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Calibrated {
     Inertia,
     Damping,
     Stiffness,
     RestAngle,
-    /// A parameter of an effect that the nominal simulator has: both are numbers from 0.
+    /// Parameter of an effect that the nominal simulator has; both are indices from 0.
     Effect {
         known: usize,
         parameter: usize,
@@ -24,10 +24,11 @@ pub(crate) enum Calibrated {
 }
 
 impl Calibrated {
-    /// The coefficients of the oscillator itself.
+    /// Coefficients of the oscillator itself.
     pub(crate) const PLAIN: [Self; 4] = [Self::Inertia, Self::Damping, Self::Stiffness, Self::RestAngle];
 
-    /// Name of a coefficient of the oscillator; that of an effect's parameter stands with the effect.
+    /// Returns the name of a coefficient of the oscillator; empty for an effect's parameter, which is named
+    /// with the effect.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Inertia => "inertia",
@@ -38,7 +39,7 @@ impl Calibrated {
         }
     }
 
-    /// The coefficient of the oscillator that it is; none for an effect's parameter.
+    /// Returns the coefficient of the oscillator as a free quantity; `None` for an effect's parameter.
     pub(crate) fn free(self) -> Option<Free> {
         match self {
             Self::Inertia => Some(Free::Inertia),
@@ -49,7 +50,7 @@ impl Calibrated {
         }
     }
 
-    /// What a coefficient of the oscillator measures.
+    /// Returns the quantity that a coefficient of the oscillator measures.
     pub(crate) fn quantity(self) -> dynamics::Quantity {
         match self {
             Self::Inertia => dynamics::Quantity::Inertia,
@@ -60,7 +61,7 @@ impl Calibrated {
         }
     }
 
-    /// Value of a coefficient of the oscillator.
+    /// Returns the value of a coefficient of the oscillator; NaN for an effect's parameter.
     pub(crate) fn of(self, coefficients: &Coefficients<f64>) -> f64 {
         match self {
             Self::Inertia => coefficients.inertia,
@@ -82,17 +83,17 @@ impl Calibrated {
     }
 }
 
-/// An effect that the nominal simulator has, with its parameters as a fit moves them.
+/// Effect that the nominal simulator has, with its fit parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Known {
     pub(crate) candidate: Candidate,
     pub(crate) stated: Vec<f64>,
-    /// Whether recalibration may move it.
+    /// `true` if recalibration may move the effect.
     pub(crate) recalibrate: bool,
 }
 
 impl Known {
-    /// The effects of a nominal simulator that act in a fit of records of a quantity.
+    /// Returns the effects of a nominal simulator that a fit of records of a quantity includes.
     pub(crate) fn of(simulator: &NominalSimulator, quantity: Quantity) -> Vec<Self> {
         let known = |known: &KnownEffect| {
             let (candidate, values) = Candidate::of(&known.active)?;
@@ -106,29 +107,29 @@ impl Known {
     }
 }
 
-/// Which simulator is believed: what is free in it.
+/// Simulator to be fitted: its known part, and what is free in it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hypothesis {
     pub(crate) nominal: Nominal,
-    /// The effects that the nominal simulator has; part of every hypothesis.
+    /// Effects that the nominal simulator has; part of every hypothesis.
     pub(crate) known: Vec<Known>,
-    /// What calibration moves: the oscillator's coefficients, then the parameters of known effects, all of an effect or
-    /// none.
+    /// Numbers that calibration moves: the oscillator's coefficients, then the parameters of known effects.
+    /// Of each known effect either all parameters are moved or none.
     pub(crate) calibrated: Vec<Calibrated>,
-    /// What is missing from the nominal simulator.
+    /// Effects that the nominal simulator lacks.
     pub(crate) candidates: Vec<Candidate>,
 }
 
-/// Where a global parameter comes from.
+/// Origin of a global parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Source {
     Nominal(Calibrated),
-    /// Index among the effects (see [`Hypothesis::effects`]), index among its parameters.
+    /// Index among the effects (see [`Hypothesis::effects`]), and index among the effect's parameters.
     Effect(usize, usize),
 }
 
 impl Hypothesis {
-    /// Candidates in the vocabulary's order, so that the same set is the same hypothesis.
+    /// Replaces the candidates, sorted in the vocabulary's order so that the same set is the same hypothesis.
     pub(crate) fn with(&self, candidates: &[Candidate]) -> Self {
         let mut candidates = candidates.to_vec();
         candidates.sort_by_key(|candidate| candidate.rank());
@@ -136,17 +137,17 @@ impl Hypothesis {
         Self { candidates, ..self.clone() }
     }
 
-    /// Every effect: those of the nominal simulator, then the candidates.
+    /// Returns every effect: those of the nominal simulator, then the candidates.
     pub(crate) fn effects(&self) -> impl Iterator<Item = Candidate> + '_ {
         self.known.iter().map(|known| known.candidate).chain(self.candidates.iter().copied())
     }
 
-    /// The effect with a number among all.
+    /// Returns the effect at an index among all.
     pub(crate) fn effect(&self, index: usize) -> Option<Candidate> {
         self.effects().nth(index)
     }
 
-    /// Whether the nominal simulator has an effect.
+    /// Returns `true` if the nominal simulator has an effect.
     pub(crate) fn knows(&self, candidate: Candidate) -> bool {
         self.known.iter().any(|known| known.candidate == candidate)
     }
@@ -163,12 +164,12 @@ impl Hypothesis {
         nominal.chain(own).collect()
     }
 
-    /// Every global parameter with its bounds.
+    /// Returns every global parameter with its bounds.
     pub(crate) fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
         let plain = |which: Calibrated| Parameter {
             name: which.name(),
             lower: match which {
-                // Units mistaken for one another put it a thousand times off.
+                // Mistaken units may put the inertia off by a factor of a thousand.
                 Calibrated::Inertia => 1e-6 * facts.inertia,
                 Calibrated::Damping | Calibrated::Stiffness => 0.0,
                 Calibrated::RestAngle | Calibrated::Effect { .. } => f64::NEG_INFINITY,
@@ -183,7 +184,8 @@ impl Hypothesis {
         nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
     }
 
-    /// A known effect's parameter with its bounds, which always admit what is stated. The effect is there at any size.
+    /// Returns a known effect's parameter with bounds that always include its stated value. The effect is
+    /// present at any size.
     fn of_known(&self, which: Calibrated, facts: &Scales) -> Option<Parameter> {
         let Calibrated::Effect { known, parameter } = which else { return None };
         let known = self.known.get(known)?;
@@ -193,7 +195,7 @@ impl Hypothesis {
         Some(Parameter { lower, upper, strength: false, shape: false, simpler: false, ..own })
     }
 
-    /// The nominal values of the calibrated coefficients: where a fit without candidates starts.
+    /// Returns the nominal values of the calibrated numbers, at which a fit without candidates starts.
     pub(crate) fn nominal_point(&self) -> Vec<f64> {
         let coefficients = self.nominal.coefficients();
         let stated = |which: Calibrated| match which {
@@ -206,7 +208,7 @@ impl Hypothesis {
         self.calibrated.iter().map(|&which| stated(which)).collect()
     }
 
-    /// Each candidate's part of a point.
+    /// Returns each candidate's part of a point.
     pub(crate) fn parts<'a>(&self, facts: &Scales, point: &'a [f64]) -> Vec<&'a [f64]> {
         // A point without candidates ends with the calibrated coefficients.
         let mut rest = point.get(self.calibrated.len()..).unwrap_or_default();
@@ -221,8 +223,8 @@ impl Hypothesis {
             .collect()
     }
 
-    /// The parameters of every effect at a point, as a fit moves them, with the place of the first among the global ones;
-    /// no place for known effects that are held.
+    /// Returns the fit parameters of every effect at a point, with the index of the first among the global
+    /// parameters; no index for known effects that are held.
     pub(crate) fn all_parts<'a>(
         &'a self,
         facts: &Scales,
@@ -261,7 +263,8 @@ impl Hypothesis {
         System::new(self.calibrated_nominal(point)?, effects)
     }
 
-    /// The oscillator at a point, and the stiffness against small swings of it with a known weight.
+    /// Returns the oscillator at a point, and its stiffness against small swings including that of a known
+    /// weight.
     pub(crate) fn swinging(&self, facts: &Scales, point: &[f64]) -> Result<(Nominal, f64), DynamicsError> {
         let nominal = self.calibrated_nominal(point)?;
         let parts = self.all_parts(facts, point).into_iter().take(self.known.len());
@@ -282,47 +285,48 @@ impl Hypothesis {
         sensor
     }
 
-    /// Whether the motion depends smoothly on everything that is fitted.
+    /// Returns `true` if the motion depends smoothly on everything that is fitted.
     pub(crate) fn smooth(&self) -> bool {
         self.effects().all(|candidate| candidate.is_smooth())
     }
 
-    /// State values of a segment that are fitted: position, velocity, hidden ones.
+    /// Returns the number of fitted state variables of a segment's start: position, velocity and hidden ones.
     pub(crate) fn start_length(&self) -> usize {
         2 + self.effects().map(|effect| effect.free_hidden()).sum::<usize>()
     }
 
-    /// The same without candidates: what every hypothesis fits.
+    /// Returns the same number without candidates, which every hypothesis fits.
     pub(crate) fn least_start_length(&self) -> usize {
         2 + self.known.iter().map(|known| known.candidate.free_hidden()).sum::<usize>()
     }
 
-    /// Its members that count as effects.
+    /// Returns the candidates that count as effects.
     pub(crate) fn counted(&self) -> impl Iterator<Item = &Candidate> {
         self.candidates.iter().filter(|own| own.counts())
     }
 
-    /// Whether it has an effect of a class.
+    /// Returns `true` if the hypothesis has an effect of a class.
     pub(crate) fn holds(&self, class: EvidenceClass) -> bool {
         self.counted().any(|own| own.evidence_class() == class)
     }
 
-    /// Whether it has neither an effect of a class nor a law without a name that stands for one.
+    /// Returns `true` if the hypothesis has neither an effect of a class nor an unnamed law that stands for
+    /// the class.
     pub(crate) fn lacks(&self, class: EvidenceClass) -> bool {
         self.counted().all(|own| own.evidence_class() != class && own.stands_for() != Some(class))
     }
 
-    /// Whether all of its effects are plain laws.
+    /// Returns `true` if all counted candidates are plain laws.
     pub(crate) fn is_plain(&self) -> bool {
         self.counted().all(|own| own.is_plain())
     }
 
-    /// How many of its effects can sit where they like on a record.
+    /// Returns the number of flexible effects among the counted candidates.
     pub(crate) fn flexible(&self) -> usize {
         self.counted().filter(|own| own.is_flexible()).count()
     }
 
-    /// The places of its candidates in the vocabulary: what tells sets apart.
+    /// Returns the candidates' positions in the vocabulary, which identify a set.
     pub(crate) fn ranks(&self) -> Vec<usize> {
         self.candidates.iter().map(|candidate| candidate.rank()).collect()
     }
@@ -332,8 +336,8 @@ impl Hypothesis {
     }
 }
 
-/// An effect with a law's parameters, kept inside their ranges: open ranges exclude their ends, which a fit at its bound
-/// reaches.
+/// Creates an effect from its law's parameters, kept inside their ranges. Open ranges exclude their ends,
+/// which a fit at its bound reaches.
 pub(crate) fn active(effect: SystemEffect, values: &[f64]) -> Result<Active, DynamicsError> {
     let parameters = effect.description().parameters;
     let inside = values.iter().zip(parameters).map(|(&value, parameter)| {

@@ -1,9 +1,10 @@
-//! Entries of matrices and vectors without a panic: what is not there is zero, and setting it does nothing.
+//! Access to entries of matrices and vectors without a panic: a missing entry reads as zero, and setting it
+//! does nothing.
 
 use nalgebra::{DMatrix, DVector};
 
 pub(crate) fn entry(matrix: &DMatrix<f64>, row: usize, column: usize) -> f64 {
-    // As the module says.
+    // A missing entry is zero, as the module documentation says.
     matrix.get((row, column)).copied().unwrap_or(0.0)
 }
 
@@ -14,17 +15,17 @@ pub(crate) fn set(matrix: &mut DMatrix<f64>, row: usize, column: usize, value: f
 }
 
 pub(crate) fn element(vector: &DVector<f64>, index: usize) -> f64 {
-    // As the module says.
+    // A missing entry is zero, as the module documentation says.
     vector.get(index).copied().unwrap_or(0.0)
 }
 
-/// Part of itself that each entry of a diagonal is raised by at least, against rounding.
+/// Minimum relative increase of each entry of a diagonal, against rounding.
 const LEAST: f64 = 1e-13;
 
-/// A normal matrix with its diagonal raised by a factor; a column without any effect gets a pivot all the same.
+/// Raises the diagonal of a normal matrix by a factor; a column without any effect gets the pivot 1.
 ///
-/// Each entry is raised by a part of itself, never of another: columns differ by many orders of magnitude with the units
-/// of their parameters.
+/// Each entry is raised in proportion to itself and not to another one: the columns differ by many orders of
+/// magnitude, as do the units of their parameters.
 pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
     let mut raised = matrix.clone();
     for i in 0..matrix.nrows() {
@@ -34,7 +35,7 @@ pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
     raised
 }
 
-/// A square matrix with some entries of its diagonal multiplied by 1 + `ridge`.
+/// Multiplies some entries of a square matrix's diagonal by 1 + `ridge`.
 pub(crate) fn ridged(
     matrix: &DMatrix<f64>,
     entries: impl IntoIterator<Item = usize>,
@@ -48,7 +49,8 @@ pub(crate) fn ridged(
     ridged
 }
 
-/// Solves a symmetric system, scaled to a unit diagonal first: parameters differ by many orders of magnitude.
+/// Solves a symmetric system after scaling it to a unit diagonal, since parameters differ by many orders of
+/// magnitude.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale: Vec<f64> =
         matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
@@ -66,7 +68,7 @@ mod tests {
     use super::raised;
     use nalgebra::{DMatrix, DVector};
 
-    /// A parameter in other units has its step in other units, and nothing else changes.
+    /// In other units of a parameter its step has other units too, and nothing else changes.
     #[test]
     fn a_step_does_not_depend_on_units() {
         let matrix = DMatrix::from_row_slice(2, 2, &[2.0, 0.3, 0.3, 1.0]);

@@ -1,4 +1,4 @@
-//! The simulator that is fitted: its hypotheses, what it predicts, and every effect it may lack.
+//! Simulator to be fitted: its hypotheses, their predictions, and every effect it may lack.
 
 pub(crate) mod candidate;
 pub(crate) mod candidates;

@@ -1,4 +1,4 @@
-//! What a hypothesis says a segment looks like, with exact derivatives.
+//! Predictions of a hypothesis for a segment, with exact derivatives.
 
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
@@ -13,70 +13,71 @@ use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 
-/// Degree of the Taylor series: at tolerances near a thousandth of the noise, fewer products a step weigh
+/// Degree of the Taylor series. At tolerances near a thousandth of the noise, fewer products per step matter
 /// more than longer steps (measured on records with friction: 14 takes a fifth longer, 10 half as long
 /// again).
 const DEGREE: usize = 12;
 
-/// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
+/// Number of steps, per segment and per sample, beyond which the motion chatters rather than swings; a fit
+/// turns back there.
 const MOST_STEPS: usize = 1200;
 const MOST_STEPS_PER_SAMPLE: usize = 3;
 
-/// What a prediction is differentiated by.
+/// Quantities that a prediction is differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Derivatives {
     None,
-    /// By the segment's own start state.
+    /// The segment's own start state.
     Starts,
-    /// By the start state and every global parameter.
+    /// The start state and every global parameter.
     All,
 }
 
-/// A hypothesis made ready for runs.
+/// Hypothesis prepared for runs.
 pub(crate) struct Simulator<'a> {
     data: &'a Data,
     hypothesis: &'a Hypothesis,
     sources: Vec<Source>,
-    /// The point that the model is set to.
+    /// Point that the model is set to.
     point: Vec<f64>,
     measurement: Sensor,
     model: Model,
     response: Response,
-    /// Where each global parameter's column stands in the response; none for the sensor's.
+    /// Column of each global parameter in the response; `None` for those of the sensor.
     columns: Vec<Option<usize>>,
     contact: Option<Contact>,
     derivatives: Derivatives,
     times: Vec<f64>,
 }
 
-/// A contact that bends before it slides: its number among the effects, that of its hidden state, and where the
-/// hidden state's column stands in the response.
+/// Contact that bends before it slides: the index of its effect among all, that of its hidden state, and the
+/// hidden state's column in the response.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
     effect: usize,
-    /// Place of the displacement among its parameters.
+    /// Index of the displacement among the effect's parameters.
     displacement: usize,
     hidden: usize,
     column: Option<usize>,
 }
 
-/// A segment's response.
+/// Prediction for a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Prediction {
-    /// Observed minus predicted.
+    /// Observed minus predicted values.
     pub(crate) residual: DVector<f64>,
-    /// ∂predicted/∂(start state, global parameters); no columns where none were asked for.
+    /// ∂predicted/∂(start state, global parameters); no columns if no derivatives were requested.
     pub(crate) jacobian: DMatrix<f64>,
 }
 
 impl Prediction {
-    /// Mean square of the residual.
+    /// Returns the mean square of the residual.
     pub(crate) fn mean_square(&self) -> f64 {
         self.residual.norm_squared() / self.residual.len().max(1) as f64
     }
 }
 
-/// The motion along a segment.
+/// Motion along a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Motion {
     pub(crate) position: Vec<f64>,
@@ -84,8 +85,9 @@ pub(crate) struct Motion {
     pub(crate) acceleration: Vec<f64>,
 }
 
-/// What is seen of a motion, with its derivatives by everything that is free: values, rates and curvatures by rows. The third
-/// derivative of the position is not integrated: what needs it is expanded one order less far, or does not apply.
+/// Observed quantity along a motion, with its derivatives by all free quantities: values, rates and
+/// curvatures by rows. The third derivative of the position is not integrated: an effect that needs it is
+/// expanded to one order less, or is not fitted.
 struct Seen<'r> {
     motion: [&'r [f64]; 3],
     by_free: [&'r [f64]; 3],
@@ -112,13 +114,14 @@ impl<'r> Seen<'r> {
     }
 
     fn at(&self, row: usize) -> [f64; 3] {
-        // A response has an entry for every row; the derivatives that it does not have count as none.
+        // A response has an entry for every row; derivatives that it lacks count as zero.
         self.motion.map(|list| list.get(row).copied().unwrap_or(0.0))
     }
 
-    /// The derivative of a reading by what stands in a column, from those by the motion.
+    /// Returns the derivative of a reading by the free quantity of a column, given the reading's derivatives
+    /// by the motion.
     fn through(&self, [d0, d1, d2]: [f64; 3], row: usize, column: usize) -> f64 {
-        // As above.
+        // As in `at`.
         let of = |list: &[f64]| list.get(row * self.columns + column).copied().unwrap_or(0.0);
         let [by_value, by_rate, by_curvature] = self.by_free;
         let mut sum = d0 * of(by_value);
@@ -129,7 +132,8 @@ impl<'r> Seen<'r> {
     }
 }
 
-/// What a motion is differentiated by, and where each global parameter stands among it.
+/// Returns the free quantities that a motion is differentiated by, and the index of each global parameter
+/// among them.
 fn free_parameters(
     hypothesis: &Hypothesis,
     sources: &[Source],
@@ -181,7 +185,8 @@ impl<'a> Simulator<'a> {
         let mut contact = contact(hypothesis);
         let (free, columns) = free_parameters(hypothesis, &sources, contact.as_mut(), derivatives);
         let curved = measurement.lag.is_some() || measurement.reading.is_some();
-        // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
+        // The limit counts sampling intervals, not samples: a drive's input has a knot at each, however few
+        // samples are fitted.
         let longest = data.longest_span() / facts.interval;
         let settings = Settings {
             tolerance: facts.tolerance,
@@ -212,8 +217,8 @@ impl<'a> Simulator<'a> {
         &self.data.facts
     }
 
-    /// Moves to another point. Only a simulator with all derivatives has parameters that are free; of the others the
-    /// point has to be the one that they were made for.
+    /// Moves to another point. Only a simulator with all derivatives has free parameters; any other one must
+    /// be given the point that it was made for.
     pub(crate) fn set(&mut self, point: &[f64]) -> Result<(), DynamicsError> {
         let mut values = Vec::new();
         let parts = self.hypothesis.all_parts(self.facts(), point);
@@ -244,8 +249,8 @@ impl<'a> Simulator<'a> {
         self.model.run_into(state, input, &self.times, &mut self.response)
     }
 
-    /// The full state at a segment's start. Hidden states that are not fitted are relaxed where the record begins;
-    /// later a contact that bends is where a steady swing of the same amplitude has brought it.
+    /// Returns the full state at a segment's start. Hidden states that are not fitted are relaxed at the
+    /// start of a record; later a contact has the deflection of a steady swing of the same amplitude.
     fn state(&self, segment: &Segment, start: &[f64]) -> FullState {
         let (position, velocity, own) = match start {
             [position, velocity, own @ ..] => (*position, *velocity, own),
@@ -266,7 +271,8 @@ impl<'a> Simulator<'a> {
         FullState { position, velocity, hidden: any.then_some(all) }
     }
 
-    /// How far the contact is bent at a segment's start; none where there is none or the record begins.
+    /// Returns the contact's deflection at a segment's start; `None` without a contact or at the start of the
+    /// record.
     fn bent(&self, segment: &Segment, start: &[f64]) -> Option<Bent> {
         let contact = self.contact.filter(|_| !segment.first)?;
         let parts = self.hypothesis.all_parts(self.facts(), &self.point);
@@ -276,8 +282,8 @@ impl<'a> Simulator<'a> {
         Some(bent(deflection, velocity / self.facts().frequency, displacement))
     }
 
-    /// The columns of the Jacobian that a contact's hidden state at a segment's start depends on, with its derivatives by
-    /// them.
+    /// Returns the columns of the Jacobian that a contact's hidden state at a segment's start depends on,
+    /// with the state's derivatives by them.
     fn bends_by(&self, segment: &Segment, start: &[f64]) -> Vec<(usize, f64)> {
         let Some((contact, bent)) = self.contact.zip(self.bent(segment, start)) else { return Vec::new() };
         let mut all = vec![(0, bent.by_deflection), (1, bent.by_quadrature / self.facts().frequency)];
@@ -292,7 +298,7 @@ impl<'a> Simulator<'a> {
         all
     }
 
-    /// The prediction for a segment from a start state.
+    /// Predicts a segment from a start state.
     pub(crate) fn predict(&mut self, segment: &Segment, start: &[f64]) -> Result<Prediction, DynamicsError> {
         self.run(segment, start)?;
         let starts = self.hypothesis.start_length();
@@ -319,7 +325,7 @@ impl<'a> Simulator<'a> {
                 self.bend(row, &seen, &observed, &bends_by, &mut jacobian);
             }
         }
-        // At rest nothing says from which side it came.
+        // At rest the readings do not tell the direction of the motion before.
         if !segment.still {
             self.hold(segment, &mut residual, &mut jacobian);
         }
@@ -327,7 +333,8 @@ impl<'a> Simulator<'a> {
         Ok(Prediction { residual, jacobian })
     }
 
-    /// Puts a row of the Jacobian: by the so many start values, then by the global parameters.
+    /// Fills a row of the Jacobian: the derivatives by the `starts` start values, then those by the global
+    /// parameters.
     fn differentiate(
         &self,
         row: usize,
@@ -346,7 +353,7 @@ impl<'a> Simulator<'a> {
                 (None, Source::Effect(index, parameter)) => {
                     let effect = self.hypothesis.effect(index);
                     let which = effect.and_then(|effect| effect.sensor_derivative(parameter));
-                    // A parameter that the sensor does not have changes no reading.
+                    // A parameter that the sensor lacks changes no reading.
                     which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
                 }
                 (None, Source::Nominal(_)) => 0.0,
@@ -355,7 +362,7 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    /// Adds what the bend of a contact at the start moves.
+    /// Adds the derivatives by way of the contact's deflection at the segment's start.
     fn bend(
         &self,
         row: usize,
@@ -372,10 +379,10 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    /// Readings that stay behind the values, where the sensor has that hysteresis.
+    /// Applies the reading hysteresis to residual and Jacobian, if the sensor has one.
     fn hold(&self, segment: &Segment, residual: &mut DVector<f64>, jacobian: &mut DMatrix<f64>) {
         let Some(width) = self.measurement.reading else { return };
-        // A list of a segment without samples is not read.
+        // The lists of a segment without samples are not read.
         let of = |list: &[f64]| list.first().copied().unwrap_or(0.0);
         let (rate, curvature) = (of(&self.response.velocity), of(&self.response.acceleration));
         let values = segment.values.iter().zip(residual.iter()).map(|(observed, left)| observed - left);
@@ -385,7 +392,7 @@ impl<'a> Simulator<'a> {
         }
         for mut column in jacobian.column_iter_mut() {
             for (row, reading) in readings.iter().enumerate() {
-                // A reading comes from a sample before it.
+                // A reading comes from the same sample or an earlier one.
                 let moved = column.get(reading.since).copied().unwrap_or(0.0);
                 if let Some(slot) = column.get_mut(row) {
                     *slot = moved;
@@ -400,13 +407,13 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    /// Number of the reading hysteresis among the global parameters.
+    /// Returns the index of the reading hysteresis among the global parameters.
     fn by_width(&self) -> Option<usize> {
         let index = self.hypothesis.effects().position(|effect| effect.holds_readings())?;
         self.sources.iter().position(|source| matches!(source, Source::Effect(at, _) if *at == index))
     }
 
-    /// From derivatives by the laws' parameters to those by the fit's.
+    /// Converts derivatives by the laws' parameters into those by the fit parameters.
     fn combine(&self, jacobian: &mut DMatrix<f64>, starts: usize) {
         if self.derivatives != Derivatives::All {
             return;
@@ -424,7 +431,8 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    /// The start state of a segment that begins where this one ends: position, velocity, fitted hidden states.
+    /// Returns the start state of a segment that begins where this one ends: position, velocity, fitted
+    /// hidden states.
     pub(crate) fn end(&mut self, segment: &Segment, start: &[f64]) -> Result<Vec<f64>, DynamicsError> {
         self.run(segment, start)?;
         let end = self.response.end;
@@ -434,7 +442,7 @@ impl<'a> Simulator<'a> {
         Ok([end.position, end.velocity].into_iter().chain(own).collect())
     }
 
-    /// The motion along a segment from a start state. Only for a simulator without derivatives.
+    /// Returns the motion along a segment from a start state. Only for a simulator without derivatives.
     pub(crate) fn motion(&mut self, segment: &Segment, start: &[f64]) -> Result<Motion, DynamicsError> {
         self.run(segment, start)?;
         Ok(Motion {
@@ -446,7 +454,7 @@ impl<'a> Simulator<'a> {
 }
 
 impl Scales {
-    /// Where the motion comes to rest at a point: the rest angle, moved by what a known weight does.
+    /// Returns the equilibrium at a point: the rest angle, shifted by a known weight.
     pub(crate) fn rest(&self, point: &[f64], hypothesis: &Hypothesis) -> f64 {
         let at = hypothesis.calibrated.iter().position(|own| *own == Calibrated::RestAngle);
         let angle =
@@ -455,7 +463,8 @@ impl Scales {
     }
 }
 
-/// Effects of a hypothesis's system, with their numbers among all and those of their first hidden states.
+/// Returns the effects in a hypothesis's system, with their indices among all and those of their first hidden
+/// states.
 fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, Candidate, usize)> {
     let mut hidden = 0;
     hypothesis.effects().enumerate().filter_map(move |(number, candidate)| {
@@ -466,7 +475,7 @@ fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, Candi
     })
 }
 
-/// The contact that bends among a hypothesis's effects.
+/// Returns the contact that bends among a hypothesis's effects.
 fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
     system_effects(hypothesis).find_map(|(effect, candidate, hidden)| {
         let displacement = candidate.bending_displacement()?;
@@ -474,7 +483,7 @@ fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
     })
 }
 
-/// Numbers of the hidden states that each segment fits, among all of the system's.
+/// Returns the indices, among the system's hidden states, of those that each segment fits.
 fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
     system_effects(hypothesis).flat_map(|(_, effect, from)| from..from + effect.free_hidden())
 }

@@ -10,7 +10,7 @@ use record::{Clock, ClockChoice, Quantity, Record};
 
 const STEP: f64 = 0.01;
 
-/// A swing of 0.3 rad that decays, 10 s at 100 samples a second, rounded to hundredths.
+/// 10 s of a decaying swing of 0.3 rad at 100 samples a second, rounded to hundredths.
 fn data() -> (Data, Nominal) {
     let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
     let values = times.iter().map(|t| STEP * (30.0 * (-0.1 * t).exp() * (6.0 * t).cos()).round()).collect();
@@ -21,7 +21,7 @@ fn data() -> (Data, Nominal) {
     (cut(std::slice::from_ref(&observations), &kept, &(&nominal).into()).unwrap(), nominal)
 }
 
-/// But for the first reading, whose turn of before the derivatives take for fixed.
+/// Except for the first reading: its derivatives take the turning point before it as fixed.
 #[test]
 fn a_held_readings_derivatives_are_those_of_its_values() {
     let (data, nominal) = data();
@@ -50,7 +50,7 @@ fn a_held_readings_derivatives_are_those_of_its_values() {
     }
 }
 
-/// Segments begin in the middle of a swing, with a contact that is bent by as much as the fit says.
+/// Segments begin in the middle of a swing, with a contact that is bent as far as the fit says.
 #[test]
 fn a_bent_contacts_derivatives_are_those_of_its_values() {
     let (data, nominal) = data();

@@ -1,4 +1,4 @@
-//! The complement of what a fit may still move.
+//! Projection on the complement of what a fit can still move.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::{Fit, Point};
@@ -16,12 +16,13 @@ pub(crate) struct Projection {
     globals: DMatrix<f64>,
 }
 
-/// Part of a column's length that has to be left, or it counts as lying in the span of those before it.
+/// Part of a column's norm that has to remain; otherwise the column counts as lying in the span of those
+/// before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Orthonormal columns with the same span; dependent ones are left out.
+/// Returns orthonormal columns with the same span; dependent ones are left out.
 ///
-/// Twice through: once is not enough for columns that are nearly dependent.
+/// The orthogonalization runs twice, since once is not enough for columns that are nearly dependent.
 fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
     let mut basis: Vec<DVector<f64>> = Vec::with_capacity(columns.ncols());
     for column in columns.column_iter() {
@@ -42,7 +43,8 @@ fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 impl Projection {
-    /// From the Jacobian of each segment: start columns first, global ones after.
+    /// Builds the projection from the Jacobian of each segment, whose columns are those of the start state,
+    /// then the global ones.
     pub(crate) fn from_jacobians(jacobians: &[DMatrix<f64>], starts: usize) -> Self {
         // Without segments there is nothing to project.
         let globals = jacobians.first().map_or(0, |jacobian| jacobian.ncols() - starts);
@@ -60,7 +62,7 @@ impl Projection {
         Self { globals: orthonormal(all), ..bare }
     }
 
-    /// At a fit, with its exact sensitivities.
+    /// Builds the projection at a fit, with its exact sensitivities.
     pub(crate) fn at(data: &Data, fit: &Fit) -> Result<Self, DynamicsError> {
         let jacobians = jacobians(data, &fit.hypothesis, &fit.point)?;
         Ok(Self::from_jacobians(&jacobians, fit.hypothesis.start_length()))
@@ -79,13 +81,13 @@ impl Projection {
         }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub(crate) fn rows(&self) -> usize {
         self.globals.nrows()
     }
 }
 
-/// The exact Jacobian of every segment at a point.
+/// Computes the exact Jacobian of every segment at a point.
 pub(crate) fn jacobians(
     data: &Data,
     hypothesis: &Hypothesis,

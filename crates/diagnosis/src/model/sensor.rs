@@ -1,30 +1,32 @@
-//! What the sensor does to the motion before a reading is written down.
+//! Map of the sensor from the motion to its readings.
 
-/// What the sensor does to the motion: the smooth effects of the measuring chain, in their physical order.
+/// Smooth effects of the measurement chain on a reading, in their physical order.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Sensor {
     pub(crate) lag: Option<f64>,
     pub(crate) nonlinearity: Option<(f64, f64)>,
     pub(crate) drift: Option<f64>,
     pub(crate) clock: Option<f64>,
-    /// Half its range, and the center of it.
+    /// Half of its range, and the center of the range.
     pub(crate) saturation: Option<(f64, f64)>,
-    /// How far readings stay behind, in either direction: [`crate::measurement::encoder_hysteresis`]. Not a map of one value.
+    /// Width by which readings lag behind in either direction: [`crate::measurement::encoder_hysteresis`]. It
+    /// is not a map of a single value.
     pub(crate) reading: Option<f64>,
 }
 
-/// An observed value with its derivatives.
+/// Observed value with its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Observed {
     pub(crate) value: f64,
-    /// With respect to the observed quantity, its first and its second time derivative.
+    /// Derivatives by the observed quantity, its first and its second time derivative.
     pub(crate) by_motion: [f64; 3],
-    /// With respect to the parameters of what the sensor does, at the places below.
+    /// Derivatives by the sensor's parameters, at the indices below.
     pub(crate) by_parameter: [f64; 7],
 }
 
 impl Observed {
-    /// Places in [`Self::by_parameter`]: a lag, a nonlinearity's amplitude and phase, a drift, a clock's change, half a range and its center.
+    /// Indices in [`Self::by_parameter`]: a lag, a nonlinearity's amplitude and phase, a drift, a clock's
+    /// change, half a range and its center.
     pub(crate) const BY_LAG: usize = 0;
     pub(crate) const BY_AMPLITUDE: usize = 1;
     pub(crate) const BY_PHASE: usize = 2;
@@ -35,16 +37,16 @@ impl Observed {
 }
 
 impl Sensor {
-    /// The true time at which a sample stamped `stamp` was taken: stamp = t + ½·r′·t².
+    /// Returns the true time at which a sample stamped `stamp` was taken: stamp = t + ½·r′·t².
     pub(crate) fn true_time(&self, stamp: f64) -> f64 {
-        // 2·s/(1 + √(1 + 2·r′·s)) is the root near s, without cancellation where r′ is small.
+        // 2·s/(1 + √(1 + 2·r′·s)) is the root near s, without cancellation for small r′.
         self.clock.map_or(stamp, |change| 2.0 * stamp / (1.0 + (1.0 + 2.0 * change * stamp).max(0.0).sqrt()))
     }
 
-    /// What the sensor shows where the observed quantity is `x` with time derivatives `rate` and `curvature`.
+    /// Computes the reading for an observed quantity `x` with time derivatives `rate` and `curvature`.
     ///
-    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. That is the low-pass's own
-    /// answer up to (ω·T)³.
+    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. It agrees with the
+    /// low-pass's own answer up to (ω·T)³.
     pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
         let mut by_motion = [1.0, 0.0, 0.0];
         let mut by_parameter = [0.0; 7];
@@ -55,7 +57,7 @@ impl Sensor {
             by_motion = [1.0, -lag, lag * lag];
             *by_lag = -rate + 2.0 * lag * curvature;
         }
-        // dt/dr′ at a given stamp, less that of the start: the start state moves along.
+        // dt/dr′ at a given stamp, less that at the start, because the start state moves along.
         *by_clock = -0.5 * (time * time - start * start) * rate;
         if let Some((amplitude, phase)) = self.nonlinearity {
             let (sine, cosine) = (value + phase).sin_cos();

@@ -1,10 +1,11 @@
-//! The response of an observed motion to small further torques.
+//! Response of an observed motion to small additional torques.
 //!
-//! Along a fitted motion the system is linear in what is added to it: I·δ̈ + γ(t)·δ̇ + κ(t)·δ = f(t), with κ and γ the
-//! derivatives of all torques at the motion. Between two samples κ and γ are taken constant (mean of both
-//! ends) and f linear, which the matrix exponential solves exactly. At a reversal with dry friction δ̇ jumps by
-//! the ratio of the accelerations after and before. One set of steps serves any number of torques; that is what
-//! makes it possible to ask for a hundred candidates at once. Full fits use exact sensitivities instead.
+//! Along a fitted motion the system is linear in small additions: I·δ̈ + γ(t)·δ̇ + κ(t)·δ = f(t), with κ and
+//! γ the derivatives of all torques at the motion. Between two samples, κ and γ are taken as constant (the
+//! mean of both ends) and f as linear; the matrix exponential solves this exactly. At a reversal with dry
+//! friction δ̇ jumps by the ratio of the accelerations after and before. One set of steps serves any number
+//! of torques, which makes it possible to evaluate a hundred candidates at once. Full fits use exact
+//! sensitivities instead.
 
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
@@ -16,20 +17,20 @@ use dynamics::{Active, Coefficients, DynamicsError, Effect, Input, System, Value
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use record::Quantity;
 
-/// The step from one sample to the next.
+/// Step from one sample to the next.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {
     transition: Matrix2<f64>,
-    /// Response to the torque at the step's begin and at its end.
+    /// Response to the torque at the start of the step and at its end.
     from: Vector2<f64>,
     to: Vector2<f64>,
 }
 
-/// Terms of the exponential's series.
+/// Number of terms of the exponential's series.
 const TERMS: usize = 26;
 
 impl Step {
-    /// The step over a time h in seconds of I·δ̈ + γ·δ̇ + κ·δ = f, with f linear.
+    /// Computes the step over a time h in seconds of I·δ̈ + γ·δ̇ + κ·δ = f, with f linear in time.
     pub(crate) fn of(h: f64, stiffness: f64, damping: f64, inertia: f64) -> Self {
         let rate = Matrix2::new(0.0, 1.0, -stiffness / inertia, -damping / inertia) * h;
         let (mut transition, mut one, mut two) = (Matrix2::zeros(), Matrix2::zeros(), Matrix2::zeros());
@@ -46,34 +47,35 @@ impl Step {
         Self { transition, from: (one - two) * push, to: two * push }
     }
 
-    /// Deviation and its rate after the step.
+    /// Returns the deviation and its rate after the step.
     pub(crate) fn after(&self, state: Vector2<f64>, from: f64, to: f64) -> Vector2<f64> {
         self.transition * state + self.from * from + self.to * to
     }
 }
 
-/// A motion on one segment, with what a small torque does to it.
+/// Motion on one segment, with its response to small torques.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
     pub(crate) times: Vec<f64>,
     pub(crate) motion: Motion,
     /// Torque of the input at the samples.
     pub(crate) input: Vec<f64>,
-    /// ∂observed/∂(quantity observed).
+    /// ∂reading/∂(observed quantity).
     pub(crate) gain: Vec<f64>,
-    /// What carries a small deviation from each sample to the next. A bending contact's hidden state is not followed.
+    /// Steps that propagate a small deviation from each sample to the next. A bending contact's hidden state
+    /// is not included.
     steps: Vec<Step>,
-    /// Slopes of the torque at the samples, by position and by velocity.
+    /// Stiffness −∂τ/∂θ and damping −∂τ/∂θ̇ at the samples.
     stiffness: Vec<f64>,
     damping: Vec<f64>,
     inertia: f64,
-    /// The segment's record, and whether it is the first of it.
+    /// Index of the segment's record, and `true` if the segment is the record's first.
     pub(crate) record: usize,
     pub(crate) first: bool,
 }
 
 impl Path {
-    /// The paths of all segments of a fit.
+    /// Computes the paths of all segments of a fit.
     pub(crate) fn of(data: &Data, fit: &Fit) -> Result<Vec<Self>, DynamicsError> {
         let mut simulator = Simulator::new(data, &fit.hypothesis, &fit.point.globals, Derivatives::None)?;
         let system = fit.hypothesis.system(&data.facts, &fit.point.globals)?;
@@ -86,7 +88,7 @@ impl Path {
             let torque = segment
                 .times
                 .iter()
-                // Where nothing acts there is no torque.
+                // Without an input there is no torque.
                 .map(|time| input.map_or(0.0, |input| gain * held(input, *time)))
                 .collect();
             let (x, rate, curvature) = observed(data.quantity, &motion);
@@ -120,7 +122,7 @@ impl Path {
         Ok(paths)
     }
 
-    /// A motion by itself, for tests of what looks at it.
+    /// Creates a path from a motion alone, for tests.
     #[cfg(test)]
     pub(crate) fn of_motion(times: Vec<f64>, motion: Motion) -> Self {
         Self {
@@ -180,7 +182,7 @@ impl Path {
             .collect();
     }
 
-    /// The motion as a candidate sees it.
+    /// Returns the motion in the form that a candidate reads.
     pub(crate) fn along<'a>(
         &'a self,
         quantity: Quantity,
@@ -205,7 +207,7 @@ impl Path {
         }
     }
 
-    /// The response of the observed quantity to a torque given at the samples, from rest.
+    /// Returns the response of the observed quantity to a torque given at the samples, from rest.
     pub(crate) fn response(&self, torque: &[f64], quantity: Quantity) -> Vec<f64> {
         self.propagate(Vector2::zeros(), torque, quantity)
     }
@@ -230,14 +232,14 @@ impl Path {
         column
     }
 
-    /// What the sensor observes, with its first and second time derivative.
+    /// Returns the observed quantity with its first and second time derivative.
     pub(crate) fn observed(&self, quantity: Quantity) -> (&[f64], &[f64], &[f64]) {
         observed(quantity, &self.motion)
     }
 }
 
-/// What the sensor observes, with its first and second time derivative; nothing in place of the third and fourth
-/// derivative of the position.
+/// Returns the observed quantity with its first and second time derivative; empty in place of the third and
+/// fourth derivative of the position.
 fn observed(quantity: Quantity, motion: &Motion) -> (&[f64], &[f64], &[f64]) {
     match quantity {
         Quantity::Position => (&motion.position, &motion.velocity, &motion.acceleration),
@@ -246,7 +248,7 @@ fn observed(quantity: Quantity, motion: &Motion) -> (&[f64], &[f64], &[f64]) {
     }
 }
 
-/// κ = −∂τ/∂θ and γ = −∂τ/∂θ̇ of everything in the system at a sample.
+/// Returns κ = −∂τ/∂θ and γ = −∂τ/∂θ̇ of the whole system at a sample.
 fn slopes(
     nominal: &Coefficients<f64>,
     effects: &[(Candidate, Values<f64>)],
@@ -263,12 +265,12 @@ fn slopes(
     (stiffness, damping)
 }
 
-/// Columns of all segments, one below the other.
+/// Stacks the columns of all segments, one below the other.
 pub(crate) fn stack(paths: &[Path], column: impl Fn(&Path) -> Vec<f64>) -> Vec<f64> {
     paths.iter().flat_map(column).collect()
 }
 
-/// A matrix from columns.
+/// Builds a matrix from columns.
 pub(crate) fn matrix(rows: usize, columns: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns.len(), |row, column| {
         // Columns are as long as there are rows.

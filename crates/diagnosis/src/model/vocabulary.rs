@@ -1,4 +1,4 @@
-//! The vocabulary: every candidate in the registry's order, and what is asked of all of them.
+//! Vocabulary: every candidate in the registry's order, and relations among them.
 
 use crate::data::scales::Scales;
 use crate::model::candidate::{Candidate, EvidenceClass};
@@ -6,23 +6,25 @@ use crate::model::candidates::{self, PositionTorque, UnlistedDamping, UnlistedSt
 use dynamics::{Active, Class, Effect, NominalSimulator};
 use record::Quantity;
 
-/// Whether an effect has a hidden motion of its own whose start is fitted with the record's.
+/// Returns `true` if the effect with a public id has a hidden motion whose start is fitted with the record's
+/// start state.
 #[must_use]
 pub fn has_fitted_hidden_start(id: &str) -> bool {
     Candidate::find(id).is_some_and(|candidate| candidate.free_hidden() > 0)
 }
 
-/// Id of the class of effects that explain alike to which the effect with a public id belongs: `friction`, `restoring`,
-/// `damping`, `play`, `drift`, `second_body`, `forcing`, `preload`, `actuator`, `sensor` or `stamps`; none for ids outside
-/// the vocabulary.
+/// Returns the id of the class that the effect with a public id belongs to. A class holds effects that act
+/// alike: `friction`, `restoring`, `damping`, `play`, `drift`, `second_body`, `forcing`, `preload`,
+/// `actuator`, `sensor` or `stamps`. `None` for ids outside the vocabulary.
 #[must_use]
 pub fn evidence_class(id: &str) -> Option<&'static str> {
     let effect = Effect::find(id).ok().filter(|effect| !dynamics::UNNAMED.contains(effect))?;
     EvidenceClass::of(effect).map(EvidenceClass::id)
 }
 
-/// Whether the effect with a public id can sit where it likes on a record and soak up what no law explains: a stop at any
-/// deflection, a line at any frequency, a drift at any time. False for effects that no fit follows.
+/// Returns `true` if the effect with a public id is flexible: it can act anywhere on a record and absorb what
+/// no law explains, such as a stop at any deflection, a line at any frequency, or a drift at any time.
+/// `false` for effects that no fit includes.
 #[must_use]
 pub fn is_flexible(id: &str) -> bool {
     Candidate::find(id).is_some_and(|candidate| candidate.is_flexible())
@@ -32,39 +34,41 @@ impl Candidate {
     /// Every candidate, in the vocabulary's order.
     pub(crate) const ALL: &'static [Self] = candidates::REGISTRY;
 
-    /// A torque along the position, whatever its cause. It is none of the candidates for a name.
+    /// Torque along the position, whatever its cause. It is not a candidate for a name.
     pub(crate) const UNNAMED: Self = Self::new(&PositionTorque);
 
-    /// A damping and a stiffness of higher order, whatever their causes. They are none of the candidates for a name either.
+    /// Damping and stiffness of higher order, whatever their causes. They are not candidates for a name
+    /// either.
     pub(crate) const UNLISTED: [Self; 2] = [Self::new(&UnlistedDamping), Self::new(&UnlistedStiffness)];
 
-    /// What is no candidate for a name.
+    /// All laws that are not candidates for a name.
     pub(crate) const NAMELESS: [Self; 3] = [Self::UNNAMED, Self::UNLISTED[0], Self::UNLISTED[1]];
 
-    /// The candidate with a public id.
+    /// Returns the candidate with a public id.
     fn find(id: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|candidate| candidate.id() == id)
     }
 
-    /// The law that fits an effect, with a name or without one; none where no fit follows it.
+    /// Returns the law that fits an effect, with a name or without one; `None` if no fit includes it.
     pub(crate) fn that_fits(effect: Effect) -> Option<Self> {
         Self::ALL.iter().chain(&Self::NAMELESS).copied().find(|candidate| candidate.effect() == effect)
     }
 
-    /// Its place in [`Self::ALL`], and behind all of these in [`Self::NAMELESS`].
+    /// Returns the candidate's position in [`Self::ALL`], followed by that in [`Self::NAMELESS`].
     pub(crate) fn rank(self) -> usize {
         let mut all = Self::ALL.iter().chain(&Self::NAMELESS);
         all.position(|other| *other == self).unwrap_or(Self::ALL.len())
     }
 
-    /// What an effect is to a fit, with the law's parameters that a fit can move; none for effects of the measuring chain
-    /// that change no value smoothly.
+    /// Returns the candidate for a stated effect, with the law's parameters that a fit can move; `None` for
+    /// effects of the measurement chain that change no value smoothly.
     pub(crate) fn of(active: &Active) -> Option<(Self, Vec<f64>)> {
         let candidate = Self::that_fits(active.effect())?;
         Some((candidate, candidate.stated(active)?))
     }
 
-    /// Every candidate that can act on these records and that the nominal simulator does not have already.
+    /// Returns every candidate that can act on these records and that the nominal simulator does not have
+    /// already.
     pub(crate) fn that_apply(facts: &Scales, quantity: Quantity, simulator: &NominalSimulator) -> Vec<Self> {
         let known: Vec<Self> =
             simulator.effects().iter().filter_map(|own| Some(Self::of(&own.active)?.0)).collect();
@@ -75,10 +79,10 @@ impl Candidate {
         all.filter(applies).collect()
     }
 
-    /// What it is easily confused with: those are fitted wherever it is.
+    /// Returns the candidates that this one is easily confused with; they are fitted wherever it is.
     ///
-    /// The relation holds in both directions, whichever of the two files states it. What a sensor does to values is fitted
-    /// beside an effect of the system only where that effect's file says so.
+    /// The relation holds in both directions, whichever of the two files states it. An effect of the sensor
+    /// on values is fitted beside an effect of the system only if the latter's file says so.
     pub(crate) fn confused_with(self) -> Vec<Self> {
         let stated = self.resembles().iter().filter_map(|id| Self::find(id));
         let states_it = |other: &Self| other.system().is_some() && other.resembles().contains(&self.id());
@@ -91,7 +95,7 @@ impl Candidate {
 }
 
 impl EvidenceClass {
-    /// The classes of candidates that take a place in a set, each once, in the order in which they come.
+    /// Returns the classes of the candidates that count in a set, each once, in order of appearance.
     pub(crate) fn among<'a>(candidates: impl IntoIterator<Item = &'a Candidate>) -> Vec<Self> {
         let mut classes = Vec::new();
         for own in candidates.into_iter().filter(|own| own.counts()) {
@@ -102,8 +106,9 @@ impl EvidenceClass {
         classes
     }
 
-    /// The class of an effect: what its candidate's file says, or, for an effect of the measuring chain that no fit
-    /// follows, what its part of a gap budget says; none for an effect of the system that no fit follows.
+    /// Returns the class of an effect: the one in its candidate's file or, for an effect of the measurement
+    /// chain that no fit includes, the one for its class of the gap budget; `None` for an effect of the
+    /// system that no fit includes.
     pub(crate) fn of(effect: Effect) -> Option<Self> {
         if let Some(candidate) = Candidate::that_fits(effect) {
             return Some(candidate.evidence_class());

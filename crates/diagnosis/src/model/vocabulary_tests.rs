@@ -67,7 +67,8 @@ const SWING: MainMode = MainMode {
     repeats: None,
 };
 
-/// Four repetitions of a driven motion at 1.01 rad/s: whatever depends on it has lines at 2.02, 3.03, ...
+/// Four repetitions of a driven motion at 1.01 rad/s: everything that depends on it has lines at 2.02, 3.03,
+/// ...
 #[test]
 fn a_multiple_of_what_repeats_is_no_forcing() {
     let forcing = Candidate::new(&PeriodicForcing);
@@ -80,8 +81,8 @@ fn a_multiple_of_what_repeats_is_no_forcing() {
     }
 }
 
-/// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third
-/// harmonic, which decays at 0.3/s.
+/// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s. It lies at the swing's
+/// third harmonic, which decays at 0.3/s.
 #[test]
 fn a_harmonic_is_no_second_body() {
     let coupling = Candidate::new(&FlexibleCoupling);
@@ -90,7 +91,7 @@ fn a_harmonic_is_no_second_body() {
     assert!(!is_itself(66.0, 0.3, &swing));
     assert!(!is_itself(66.0, 0.44, &swing));
     assert!(!is_itself(66.0, 0.21, &swing));
-    // Struck once, it decays as it likes: a harmonic does not.
+    // A body that is struck once decays at its own rate; a harmonic does not.
     assert!(is_itself(66.0, 0.46, &swing));
     assert!(is_itself(66.0, 0.19, &swing));
     assert!(!is_itself(66.0, 0.61, &MainMode { starts_once: false, ..swing }));
@@ -98,7 +99,7 @@ fn a_harmonic_is_no_second_body() {
     // Near the swing itself no decay tells it apart, and a body that hardly swings is none.
     assert!(!is_itself(22.0, 2.0, &swing));
     assert!(!is_itself(60.0, 50.0, &swing));
-    // Within half a turn of it over the record it is the swing's own, by clocks that differ.
+    // Within half a turn of the swing over the record, the line is the swing's own on clocks that differ.
     assert!(is_itself(22.2, 0.1, &swing) && !is_itself(22.2, 0.1, &MainMode { resolution: 0.5, ..swing }));
 }
 
@@ -217,7 +218,7 @@ fn every_effect_of_the_vocabulary_has_a_class() {
     assert_eq!(of("gravity"), "restoring");
     assert_eq!(of("damping_drift"), "damping");
     assert_eq!(of("clock_drift"), "drift");
-    // No fit follows these.
+    // No fit includes these.
     assert_eq!(of("timestamp_jitter"), "stamps");
     assert_eq!(of("dropouts"), "stamps");
     assert_eq!(of("outliers"), "sensor");

@@ -1,4 +1,4 @@
-//! The noise floor, measured from a residual.
+//! Noise floor, measured from a residual.
 
 use crate::data::segments::Data;
 use crate::noise::rounding;
@@ -9,27 +9,28 @@ use serde::Serialize;
 /// Standard deviation of the white part of a residual.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NoiseFloor {
-    /// s₀ with s₀² = mean((e₍ᵢ₋₁₎ − 2eᵢ + e₍ᵢ₊₁₎)²)/6, in the observed quantity's unit. Quantization is part of it.
+    /// s₀ with s₀² = mean((e₍ᵢ₋₁₎ − 2eᵢ + e₍ᵢ₊₁₎)²)/6, in the observed quantity's unit. It includes
+    /// quantization.
     pub value: f64,
-    /// 95 % interval.
+    /// Lower and upper end of the 95 % interval.
     pub interval_95: [f64; 2],
-    /// Second differences used.
+    /// Number of second differences used.
     pub count: usize,
 }
 
-/// The floor from second differences of a residual.
+/// Computes the floor from second differences of a residual.
 ///
-/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². In readings
-/// rounded to steps they show less than there is where the motion is slow: what rounding does to the
-/// differences of this very motion is worked out and taken back ([`crate::rounding`]).
+/// A smooth misfit cancels in second differences; white noise does not: their variance is 6·s₀². In readings
+/// rounded to steps they show too little noise where the motion is slow. The effect of rounding on the
+/// differences of this motion is computed and corrected ([`crate::noise::rounding`]).
 ///
-/// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
-/// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
+/// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise
+/// have correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
 pub(crate) fn floor(data: &Data, residuals: &[DVector<f64>]) -> NoiseFloor {
     of_squares(&squares(data, residuals))
 }
 
-/// The same from the [`squares`] of a residual.
+/// Computes the floor from the [`squares`] of a residual.
 pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
     let count = squares.iter().flatten().flatten().count() as f64;
     let variance = squares.iter().flatten().flatten().sum::<f64>() / count.max(1.0);
@@ -43,8 +44,8 @@ pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
     }
 }
 
-/// For each sample of each segment but the outermost, a sixth of the squared second difference about it, on
-/// the scale on which their mean is the variance of a sample.
+/// Returns, for each sample of each segment but the outermost, a sixth of the squared second difference about
+/// it. Their mean is the variance of a sample; the effect of rounding is corrected.
 pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option<f64>>> {
     let mut squares: Vec<_> = residuals.iter().map(|residual| sixths(residual.as_slice())).collect();
     if let Some(step) = data.resolution {

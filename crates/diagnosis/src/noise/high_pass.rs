@@ -1,6 +1,6 @@
-//! A series without what is slower than a period.
+//! High-pass filter by a moving mean over one period.
 
-/// Integral of a polygon from its first time to each of its times.
+/// Returns the integrals of a polygon from its first time to each of its times.
 fn integrals(times: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let steps = times.iter().zip(times.iter().skip(1)).zip(values.iter().zip(values.iter().skip(1)));
@@ -11,7 +11,7 @@ fn integrals(times: &[f64], values: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(ends).collect()
 }
 
-/// The same to any time within it.
+/// Returns the integral of a polygon from its first time to any time within it.
 fn integral(times: &[f64], values: &[f64], integrals: &[f64], time: f64) -> f64 {
     let last = times.len().saturating_sub(2);
     let at = times.partition_point(|own| *own <= time).saturating_sub(1).min(last);
@@ -24,12 +24,13 @@ fn integral(times: &[f64], values: &[f64], integrals: &[f64], time: f64) -> f64 
     };
     let part = time - from;
     let slope = if to > from { (next - one) / (to - from) } else { 0.0 };
-    // Never absent: there are as many as times.
+    // Never absent: there are as many integrals as times.
     integrals.get(at).copied().unwrap_or(0.0) + part * (one + 0.5 * part * slope)
 }
 
-/// Takes from every value the mean over a period about it, of the polygon through the values; at the ends of the series the period is
-/// its first and its last. A swing of this period stays as it is, a slow drift leaves nothing.
+/// Subtracts from every value the mean of the polygon through the values over a period centered on it; at the
+/// ends of the series, over the first or last period. A swing of this period stays as it is; a slow drift
+/// vanishes.
 pub(crate) fn high_pass(times: &[f64], values: &mut [f64], period: f64) {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return };
     let period = period.min(last - first);
@@ -50,7 +51,7 @@ mod tests {
     use super::high_pass;
     use std::f64::consts::TAU;
 
-    /// Times that are not quite regular, nine in a period of 1 s.
+    /// Slightly irregular times, nine in a period of 1 s.
     fn times() -> Vec<f64> {
         (0..400).map(|at| f64::from(at) / 9.0 + 0.01 * f64::from(at).sin()).collect()
     }

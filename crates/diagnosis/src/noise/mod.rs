@@ -1,4 +1,4 @@
-//! What is random in a record: its size, its spectrum, and the statistics of both.
+//! Noise of a record: its size, its spectrum, and the statistics of both.
 
 pub(crate) mod floor;
 pub(crate) mod high_pass;

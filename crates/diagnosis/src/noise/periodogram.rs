@@ -3,24 +3,24 @@
 use crate::data::scales::below_images;
 use crate::noise::statistics::mean;
 
-/// A line and its score.
+/// Line and its gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Line {
     /// Angular frequency in rad/s.
     pub(crate) frequency: f64,
-    /// Squares of the residual that a sine and a cosine of this frequency take away.
+    /// Decrease of the sum of squares by a sine and a cosine of this frequency.
     pub(crate) gain: f64,
 }
 
-/// Frequencies looked at, at most.
+/// Largest number of frequencies on a grid.
 pub(crate) const MOST_FREQUENCIES: usize = 4000;
 
-/// Adds to each frequency of a grid what a sine and a cosine of it, under weights that have been multiplied
-/// with the values already, take away from these at even or uneven times; `squares` is the sum of the squared
-/// weights.
+/// Adds to each gain on a grid of frequencies the decrease of the sum of squares by a sine and a cosine.
+/// `points` are times, even or uneven, and values already multiplied with weights; `squares` is the sum of
+/// the squared weights.
 ///
-/// The phasor of each sample is turned from one frequency to the next, which costs four products in place of a sine
-/// and a cosine.
+/// The phasor of each sample is rotated from one frequency to the next, which costs four products instead of
+/// a sine and a cosine.
 pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, gains: &mut [f64]) {
     let turned = |frequency: f64| points.iter().map(move |(time, _)| (frequency * time).sin_cos());
     let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
@@ -37,9 +37,9 @@ pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, g
     }
 }
 
-/// The highest peaks of gains on a grid.
+/// Returns the highest peaks of gains on a grid.
 pub(crate) fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<Line> {
-    // Beside the grid there is no gain.
+    // Beyond the grid there is no gain.
     let at = |index: Option<usize>| index.and_then(|i| gains.get(i)).copied().unwrap_or(0.0);
     let mut peaks: Vec<Line> = gains
         .iter()
@@ -52,11 +52,11 @@ pub(crate) fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<L
     peaks
 }
 
-/// Shortest periods of a swing that its strongest line is looked for in.
+/// Longest span, in shortest periods of a swing, over which its strongest line is searched for.
 const PERIODS: f64 = 200.0;
 
-/// Period in seconds of the strongest line in values about their mean, of a swing whose period is no shorter than `shortest`
-/// by more than a few times; none where the values are too short for one.
+/// Returns the period in seconds of the strongest line in values about their mean. It may be shorter than
+/// `shortest` by up to a factor of five. `None` if the values are too short for a line.
 pub(crate) fn strongest_period(times: &[f64], values: &[f64], shortest: f64) -> Option<f64> {
     let (first, last) = (times.first()?, times.last()?);
     let span = (last - first).min(PERIODS * shortest);
@@ -76,14 +76,16 @@ pub(crate) fn strongest_period(times: &[f64], values: &[f64], shortest: f64) -> 
     peaks(&gains, lowest, step, 1).first().map(|line| std::f64::consts::TAU / line.frequency)
 }
 
-/// Frequencies that a dominant line is looked for among, and steps between two of them in which its place is told.
+/// Largest number of frequencies among which a dominant line is searched for. [`FINER`] is the number of
+/// steps of the fine grid about it.
 const MOST_DOMINANT: usize = 1000;
 const FINER: f64 = 40.0;
 
-/// Part of the squares that a dominant line holds at least.
+/// Smallest share of the squares that a dominant line holds.
 const DOMINANT: f64 = 0.5;
 
-/// Part of the squares of values about their mean that a sine and a cosine of an angular frequency take away.
+/// Returns the share of the squares of values about their mean that a sine and a cosine of an angular
+/// frequency explain.
 pub(crate) fn share(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     let middle = mean(values);
     let points: Vec<(f64, f64)> =
@@ -94,7 +96,8 @@ pub(crate) fn share(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     gain.iter().sum::<f64>() / squares.max(f64::MIN_POSITIVE)
 }
 
-/// Angular frequency of the line that holds most of the squares of values about their mean; none where there is no such line.
+/// Returns the angular frequency of the line that holds most of the squares of values about their mean;
+/// `None` if there is no such line.
 pub(crate) fn dominant_frequency(times: &[f64], values: &[f64]) -> Option<f64> {
     let (first, last) = (times.first()?, times.last()?);
     let resolution = std::f64::consts::TAU / (last - first);
@@ -108,7 +111,7 @@ pub(crate) fn dominant_frequency(times: &[f64], values: &[f64]) -> Option<f64> {
         add(&points, points.len() as f64, lowest, step, &mut gains);
         peaks(&gains, lowest, step, 1).first().copied()
     };
-    // A line between two of the grid's frequencies keeps 0.8 of its squares at half the resolution.
+    // On a grid with a step of half the resolution, a line between two frequencies keeps 0.8 of its squares.
     let coarse = strongest(1.5 * resolution, 0.5 * resolution, count)?;
     let step = 2.0 * resolution / FINER;
     let fine = strongest(coarse.frequency - resolution, step, FINER as usize + 1)?;
@@ -133,7 +136,7 @@ mod tests {
         assert_eq!(strongest_period(&times[..1], &values[..1], 0.4), None);
     }
 
-    /// Four repetitions that are no sine, and a chirp.
+    /// Four repetitions of a motion that is not a sine, and a chirp.
     #[test]
     fn a_motion_that_repeats_has_a_dominant_line() {
         let times: Vec<f64> = (0..2500).map(|at| f64::from(at) * 0.01).collect();
@@ -146,7 +149,7 @@ mod tests {
         assert_eq!(dominant_frequency(&times, &of(&|time| ((1.0 + 0.3 * time) * time).sin())), None);
     }
 
-    /// A sine of amplitude a that decays at a rate r takes a²/(4r) with it, sampled n times a second: n·a²/(4r).
+    /// A sine of amplitude a that decays at a rate r, sampled n times a second, has n·a²/(4r) of squares.
     #[test]
     fn a_decaying_line_is_found_with_its_squares() {
         let (rate, frequency, amplitude, interval) = (0.8, 31.0, 2e-3, 0.01);
@@ -162,7 +165,7 @@ mod tests {
         assert!((best.frequency - frequency).abs() < 0.11, "{best:?}");
         let expected = amplitude * amplitude / (4.0 * rate) / interval;
         assert!((best.gain / expected - 1.0).abs() < 0.05, "{} {expected}", best.gain);
-        // A steady sine over the same 25 s takes a tenth of that.
+        // A steady sine over the same 25 s explains a tenth of that.
         let plain: Vec<(f64, f64)> = times.iter().copied().zip(values).collect();
         let mut steady = vec![0.0; 400];
         add(&plain, plain.len() as f64, 10.0, 0.1, &mut steady);

@@ -1,18 +1,17 @@
-//! The interval of a ratio of two sums that come in blocks.
+//! Confidence interval of a ratio of two sums that come in blocks.
 
 use crate::noise::statistics::student_above;
 
 /// Sums of a block: numerator and denominator.
 pub(crate) type Block = [f64; 2];
 
-/// The 95 % interval of Σa/Σb, where the sums come in blocks and the blocks in runs of neighbors; `None` where the
-/// data cannot tell Σb from zero or below, so that every ratio is possible.
+/// Returns the 95 % interval of Σa/Σb, for sums that come in blocks, and blocks that come in runs of
+/// neighbors. `None` if the data cannot distinguish Σb from zero or less, so that every ratio is possible.
 ///
 /// A ratio R is in the interval if Σ(a − R·b) differs from zero by no more than t standard errors, which is a
-/// quadratic in R. Variances come from differences of neighbors, cov(Σa, Σb) = n·Σ(aⱼ₊₁ − aⱼ)(bⱼ₊₁ − bⱼ)/(2m)
-/// over the m pairs of n blocks: what changes slowly from block to block, as the error of a simulator does
-/// along a decay, is no noise.
-///
+/// quadratic condition on R. Variances come from differences of neighbors, cov(Σa, Σb) =
+/// n·Σ(aⱼ₊₁ − aⱼ)(bⱼ₊₁ − bⱼ)/(2m) over the m pairs of n blocks: slow changes from block to block, such as a
+/// simulator's error along a decay, are not noise.
 /// # Reference
 /// Fieller, Journal of the Royal Statistical Society B 16 (1954) 175; von Neumann, Kent, Bellinson, Hart, Annals of
 /// Mathematical Statistics 12 (1941) 153, for variances from successive differences.
@@ -28,7 +27,8 @@ pub(crate) fn ratio_interval(runs: &[Vec<Block>]) -> Option<[f64; 2]> {
     if count < 1.0 {
         return None;
     }
-    // A variance from n − 1 successive differences of white noise is worth two thirds of as many degrees of freedom.
+    // A variance from n − 1 successive differences of white noise is worth two thirds of as many degrees of
+    // freedom.
     let t = student_above(0.025, (2.0 / 3.0 * count).max(1.0));
     let scale = t * t * blocks / (2.0 * count);
     let [square, product, constant] = [b * b - scale * bb, a * b - scale * ab, a * a - scale * aa];
@@ -42,7 +42,8 @@ mod tests {
     use super::ratio_interval;
     use rand_distr::{Distribution, StandardNormal};
 
-    /// Intervals of a known ratio hold it in 95 % of draws, noise in both sums, a decaying denominator.
+    /// Intervals of a known ratio hold it in 95 % of draws, with noise in both sums and a decaying
+    /// denominator.
     #[test]
     fn intervals_hold() {
         let mut generator = seed::Seed::new(3).child("ratio").generator();
@@ -70,7 +71,7 @@ mod tests {
         let blocks =
             |sign: f64| (0..40).map(move |at| [1.0, if at % 2 == 0 { sign } else { -1.0 }]).collect();
         assert_eq!(ratio_interval(&[blocks(1.0)]), None);
-        // A positive sum that noise has made plainly negative says no more.
+        // A positive sum that noise has made clearly negative is no better.
         assert_eq!(ratio_interval(&[vec![[1.0, -1.0]; 40]]), None);
         assert_eq!(ratio_interval(&[]), None);
         assert_eq!(ratio_interval(&[vec![[1.0, 1.0]]]), None);

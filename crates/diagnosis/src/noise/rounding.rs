@@ -1,22 +1,22 @@
-//! What a sensor's steps make of a noise floor.
+//! Effect of a sensor's steps on the noise floor.
 //!
 //! Rounding is not white: where the motion is slow, or crosses a whole number of steps from sample to sample,
-//! neighbors are rounded alike, and second differences show less than there is. How much depends on the
-//! motion and on the size of the noise beneath the steps; so the sensor is played through: this motion, white
+//! neighbors are rounded alike, and second differences underestimate the error. By how much depends on the
+//! motion and on the size of the noise beneath the steps. So the sensor is simulated: this motion, white
 //! Gaussian noise, rounding.
 
 use crate::noise::statistics::sixths;
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 
-/// Plays of every sample.
+/// Number of simulations of every sample.
 const PLAYS: usize = 4;
 
-/// Bisections of the noise's size: to 1 part in 4000 of the floor or the step, whichever is larger.
+/// Number of bisections of the noise's size: to 1 part in 4000 of the floor or the step, whichever is larger.
 const BISECTIONS: usize = 12;
 
-/// A mean of squares that noise and rounding make, by how far it lies from that of the noise alone in the
-/// same draws: most of what is chance in the draws cancels.
+/// Mean square of noise and rounding, stored as its distance from that of the noise alone in the same draws:
+/// most of the chance in the draws cancels.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mean {
     beyond: f64,
@@ -34,13 +34,14 @@ impl Mean {
     }
 }
 
-/// Mean square error of a sample over the mean of the [`sixths`], in readings rounded to whole steps.
+/// Returns the mean square error of a sample over the mean of the [`sixths`], in readings rounded to whole
+/// steps.
 ///
 /// `pieces` are readings and their errors against the motion, piece by piece, all in the unit of `step`;
-/// `measured` is the root of the mean sixth in these readings. The noise beneath the steps is taken to be
-/// white and Gaussian, as large as makes that mean. 1 where the readings show no noise.
+/// `measured` is the root of the mean sixth in these readings. The noise beneath the steps is assumed to be
+/// white and Gaussian, with the size that gives this mean. 1 if the readings show no noise.
 ///
-/// Draws are the nodes of an integral: they are the same in every call.
+/// The draws are the nodes of an integral: they are the same in every call.
 pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f64 {
     let first = pieces.iter().find_map(|(readings, _)| readings.first().copied());
     let Some(lattice) = first.filter(|_| measured > 0.0) else { return 1.0 };
@@ -53,7 +54,7 @@ pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f
         .flat_map(|_| motions.iter().map(Vec::len).collect::<Vec<_>>())
         .map(|count| (0..count).map(|_| StandardNormal.sample(&mut generator)).collect())
         .collect();
-    // The mean square error, and the mean of the sixths.
+    // Returns the mean square error, and the mean of the sixths.
     let play = |noise: f64| -> [f64; 2] {
         let (mut all, mut differences) = (Mean::default(), Mean::default());
         for (motion, draws) in motions.iter().cycle().zip(&draws) {
@@ -75,7 +76,7 @@ pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f
         }
         [all.with(noise), differences.with(noise)]
     };
-    // A noise of more than a step cannot be hidden by rounding.
+    // Rounding cannot hide noise of more than a step.
     let (mut low, mut high) = (0.0, measured.max(step));
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -92,7 +93,8 @@ mod tests {
     use crate::noise::statistics::sixths;
     use rand_distr::{Distribution, StandardNormal};
 
-    /// Rounded decaying swings: what a floor is off by without the factor, and with it. Chance alone makes 1 %.
+    /// Rounded decaying swings: the error of a floor without the factor, and with it. Chance alone causes
+    /// 1 %.
     #[test]
     fn a_floor_is_the_size_of_the_errors() {
         let mut worst: [f64; 2] = [0.0; 2];

@@ -3,17 +3,20 @@
 use crate::data::segments::Data;
 use crate::noise::periodogram::{Line, MOST_FREQUENCIES, add, peaks};
 
-/// The highest angular frequency looked at. A search looks at every so many samples only.
+/// Returns the highest angular frequency examined. It follows from the sampling interval of these data, which
+/// is longer in a search.
 fn highest(data: &Data) -> f64 {
     data.facts.highest_frequency(data.interval())
 }
 
-/// About how many independent frequencies the lines of a whole record are chosen from.
+/// Returns the approximate number of independent frequencies from which the lines of a whole record are
+/// chosen.
 pub(crate) fn frequencies(data: &Data) -> f64 {
     (highest(data) * data.facts.duration / std::f64::consts::TAU).max(1.0)
 }
 
-/// Frequencies from 1.5 periods in a span up, at half its resolution: the lowest, the step, how many.
+/// Returns a grid of angular frequencies from 1.5 periods per span up, at half the span's resolution: the
+/// lowest, the step, and their number.
 fn grid(data: &Data, span: f64) -> (f64, f64, usize) {
     let highest = highest(data);
     let lowest = 1.5 * std::f64::consts::TAU / span;
@@ -21,8 +24,8 @@ fn grid(data: &Data, span: f64) -> (f64, f64, usize) {
     (lowest, (highest - lowest) / count as f64, count)
 }
 
-/// The strongest steady lines of a residual that comes in segments, of one phase for a record, as of a
-/// machine next door: peaks of the periodogram.
+/// Returns the strongest steady lines of a residual that comes in segments: peaks of the periodogram. Each
+/// line has one phase per record, like the vibration of a nearby machine.
 pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line> {
     let (lowest, step, count) = grid(data, data.facts.duration);
     let mut gains = vec![0.0; count];
@@ -35,14 +38,14 @@ pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line>
     peaks(&gains, lowest, step, most)
 }
 
-/// Decay over the longest segment, as a logarithm, that a second mode is looked for with.
+/// Decay over the longest segment, as a logarithm, at which a second mode is searched for.
 pub(crate) const DECAYS: [f64; 4] = [1.0, 4.0, 16.0, 64.0];
 
-/// The strongest lines that decay from each segment's beginning, in a phase of its own, as of a second mode
-/// struck anew; with the rate of decay in 1/s.
+/// Returns the strongest lines that decay from the beginning of each segment, each with a phase of its own
+/// there, like a second mode that is struck anew, with their decay rates in 1/s.
 ///
-/// A steady sine takes away only 2/(r·T) of a line that decays at a rate r over a span T, so that each rate
-/// is looked for by itself: sine and cosine under exp(−r·t).
+/// A steady sine explains only the share 2/(r·T) of the squares of a line that decays at a rate r over a span
+/// T. So each rate is tried separately, with sine and cosine under exp(−r·t).
 pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<(Line, f64)> {
     let span = data.longest_span();
     let (lowest, step, count) = grid(data, span);
@@ -67,7 +70,7 @@ pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> 
         found.extend(peaks(&gains, lowest, step, most).into_iter().map(|line| (line, rate)));
     }
     found.sort_by(|a, b| b.0.gain.total_cmp(&a.0.gain));
-    // One line, looked for with several rates, comes out once for each.
+    // One line, searched for at several rates, is found once for each of them.
     let width = |one: f64, other: f64| 2.0 * one.max(other) + 4.0 * step;
     let apart = |(one, own): &(Line, f64), (other, its): &(Line, f64)| {
         (one.frequency - other.frequency).abs() > width(*own, *its)
@@ -75,7 +78,8 @@ pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> 
     that_lie_apart(found, apart, most)
 }
 
-/// The first so many of a list, best first, that all lie apart: of several about one place the best stands.
+/// Returns the first `most` elements of a list, best first, that all lie apart: of several close ones the
+/// best is kept.
 pub(crate) fn that_lie_apart<T>(found: Vec<T>, apart: impl Fn(&T, &T) -> bool, most: usize) -> Vec<T> {
     let mut chosen: Vec<T> = Vec::new();
     for one in found {

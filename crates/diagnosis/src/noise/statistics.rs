@@ -1,18 +1,18 @@
-//! Small statistics that several parts use.
+//! Basic statistics.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
-/// Mean; 0 of nothing.
+/// Returns the mean; 0 for no values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// The value below which a share of the values lies; 0 of nothing.
+/// Returns the value below which a share of the values lies; 0 for no values.
 pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = share * sorted.len().saturating_sub(1) as f64;
-    // No values have the median zero: callers have some.
+    // Without values the quantile is 0; callers have some.
     let below = sorted.get(at.floor() as usize).copied().unwrap_or_default();
     let above = sorted.get(at.ceil() as usize).copied().unwrap_or(below);
     below + (above - below) * at.fract()
@@ -22,25 +22,25 @@ pub(crate) fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The value that a chi-square variable with so many degrees of freedom exceeds with a probability.
+/// Returns the value that a chi-square variable with the given degrees of freedom exceeds with a probability.
 pub(crate) fn chi_squared_above(degrees: f64, probability: f64) -> f64 {
     ChiSquared::new(degrees.max(1e-3)).map_or(f64::INFINITY, |d| d.inverse_cdf(1.0 - probability))
 }
 
-/// The value that a standard normal variable exceeds with a probability.
+/// Returns the value that a standard normal variable exceeds with a probability.
 pub(crate) fn normal_above(probability: f64) -> f64 {
     Normal::new(0.0, 1.0).map_or(f64::INFINITY, |d| -d.inverse_cdf(probability))
 }
 
-/// The value that a Student variable with so many degrees of freedom exceeds with a probability.
+/// Returns the value that a Student variable with the given degrees of freedom exceeds with a probability.
 pub(crate) fn student_above(probability: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees).map_or(f64::INFINITY, |d| -d.inverse_cdf(probability))
 }
 
-/// Integrated autocorrelation time τ = 1 + 2·Σ ρₖ of a zero-mean series that comes in pieces, at least 1: N samples
-/// carry as much information as N/τ independent ones.
+/// Computes the integrated autocorrelation time τ = 1 + 2·Σ ρₖ, in samples, of a zero-mean series that comes
+/// in pieces. It is at least 1: N samples carry as much information as N/τ independent ones.
 ///
-/// The sum runs over pairs ρ₂ₖ + ρ₂ₖ₊₁ for as long as they are positive.
+/// The sum runs over pairs ρ₂ₖ + ρ₂ₖ₊₁ as long as they are positive.
 ///
 /// # Reference
 /// Geyer, Statistical Science 7 (1992) 473, initial positive sequence.
@@ -49,7 +49,7 @@ pub(crate) fn autocorrelation_time(pieces: &[&[f64]]) -> f64 {
     if square <= 0.0 {
         return 1.0;
     }
-    // Without pieces nothing is correlated.
+    // Without pieces there is no correlation.
     let longest = pieces.iter().map(|piece| piece.len()).max().unwrap_or(0);
     let at = |lag: usize| -> f64 {
         let products = pieces.iter().flat_map(|p| p.iter().zip(p.iter().skip(lag)));
@@ -66,7 +66,7 @@ pub(crate) fn autocorrelation_time(pieces: &[&[f64]]) -> f64 {
     sum.max(1.0)
 }
 
-/// Mean of a list, and standard error of that mean.
+/// Returns the mean of a list, and its standard error.
 pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let center = mean(values);
     let count = values.len() as f64;
@@ -74,7 +74,8 @@ pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (center, (variance / count.max(1.0)).sqrt())
 }
 
-/// For each sample but the outermost, a sixth of the squared second difference of the errors about it.
+/// Returns, for each sample but the outermost, a sixth of the squared second difference of the errors about
+/// it.
 pub(crate) fn sixths(errors: &[f64]) -> Vec<Option<f64>> {
     let inner = errors.windows(3).map(|e| match e {
         &[a, b, c] => Some((a - 2.0 * b + c).powi(2) / 6.0),

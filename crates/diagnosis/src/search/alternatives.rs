@@ -1,9 +1,9 @@
-//! What could be added to the best set of effects, and what could take a class's place in it.
+//! Alternatives to the best set: effects that could be added, and effects that could replace a class.
 //!
-//! A search goes by what sets gain. Once they are weighed, the best of them may be one that the search has not gone on
-//! from. So effects are added to it, one of each class at a time, for as long as that makes a better one; and then every
-//! class of it is taken out and replaced, since a class is as well supported as the best set with it is over the best one
-//! without, and each kind of the class is put in its place.
+//! A search follows the gains of sets. Once the sets are weighed, the best of them may be one that the search
+//! has not expanded. So effects are added to it, one of each class at a time, as long as that gives a better
+//! set. Then every class of it is removed and replaced, since the evidence for a class is that of the best
+//! set with it minus that of the best set without it; each kind of the class is tried in its place too.
 
 use crate::data::segments::Data;
 use crate::evidence::weights::Weighing;
@@ -18,14 +18,14 @@ use crate::search::gains::singles;
 use crate::search::proposals::{Proposal, additions, proposal, take_in};
 use rayon::prelude::*;
 
-/// Effects that are added to the best set at most.
+/// Largest number of effects added to the best set.
 const ROUNDS: usize = 2;
 
-/// Classes that are tried beside a set, and effects in the place of one.
+/// Number of classes tried beside a set, and of effects tried in the place of a class.
 const BESIDE: usize = 5;
 const INSTEAD: usize = 2;
 
-/// Fits what could be added to the best set of an archive, and what could take a class's place in it.
+/// Fits sets with additional effects, and sets in which a class of the archive's best set is replaced.
 pub(crate) fn alternatives(
     data: &Data,
     calibrated: &Fit,
@@ -63,7 +63,8 @@ pub(crate) fn alternatives(
     take_in(data, archive, begun.into_iter().flatten().collect(), Stopping::SEARCH);
 }
 
-/// A set without a class, and proposals of what could take its place: other classes, and each kind of this one.
+/// Returns a set without a class, and proposals for its replacement: other classes, and each kind of this
+/// one.
 fn without(
     data: &Data,
     set: &Fit,
@@ -80,14 +81,14 @@ fn without(
         |own: &Candidate| own.evidence_class() != class && !bare.hypothesis.candidates.contains(own);
     let others: Vec<Candidate> = candidates.iter().copied().filter(is_other).collect();
     let mut begun = proposals(data, &bare, &others, INSTEAD, archive);
-    // Which kind of the class it is has to be asked too.
+    // Each kind of the class is tried too.
     let kinds = candidates.iter().filter(|own| own.evidence_class() == class);
     begun.extend(kinds.flat_map(|own| proposals(data, &bare, &[*own], 1, archive)));
     (Some(bare), begun)
 }
 
-/// What could be added to a set: of each class the candidate that gains most to first order, the best of so many classes.
-/// Sets that are known are left out.
+/// Proposes additions to a set: of each class the candidate with the largest first-order gain, for the best
+/// `most` classes. Known sets are left out.
 fn proposals(data: &Data, set: &Fit, others: &[Candidate], most: usize, archive: &Archive) -> Vec<Proposal> {
     let Ok(dictionary) = Dictionary::at(data, set, others) else { return Vec::new() };
     let mut classes: Vec<EvidenceClass> = Vec::new();

@@ -1,4 +1,4 @@
-//! The sets that a search has fitted.
+//! Archive of the sets that a search has fitted.
 
 use crate::data::segments::Data;
 use crate::evidence::score::score;
@@ -8,35 +8,38 @@ use crate::model::hypothesis::Hypothesis;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-/// Every set that was fitted, best fit of each.
+/// Every set that was fitted, with the best fit of each.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Archive {
     pub(crate) fits: Vec<Fit>,
-    /// Sets with a strength that ended at zero: the data have no use for it, or with the wrong sign.
+    /// Rejected sets: a strength ended at zero (the data do not support it, or only with the wrong sign), or
+    /// a member turned into another effect.
     pub(crate) rejected: Vec<Vec<Candidate>>,
-    /// Where fits have begun, to the bit: [`Self::is_new`].
+    /// Points at which fits have begun, to the bit; see [`Self::is_new`].
     begun: BTreeSet<Vec<u64>>,
 }
 
 impl Archive {
-    /// The calibrated simulator alone.
+    /// Creates an archive of the recalibrated simulator alone.
     pub(crate) fn of(calibrated: &Fit) -> Self {
         Self::from(vec![calibrated.clone()], Vec::new())
     }
 
-    /// Some fits, and sets that were rejected.
+    /// Creates an archive of some fits and rejected sets.
     pub(crate) fn from(fits: Vec<Fit>, rejected: Vec<Vec<Candidate>>) -> Self {
         Self { fits, rejected, begun: BTreeSet::new() }
     }
 
-    /// Whether no fit of so many steps at most has begun at a point yet: another one would end where that has.
+    /// Returns `true` if no fit with this step limit has begun at a point yet, and records it: another one
+    /// would end at the same point.
     pub(crate) fn is_new(&mut self, hypothesis: &Hypothesis, point: &Point, steps: usize) -> bool {
         let ranks = hypothesis.ranks().into_iter().chain([steps]).map(|number| number as u64);
         let values = point.globals.iter().chain(point.starts.iter().flatten());
         self.begun.insert(ranks.chain(values.map(|value| value.to_bits())).collect())
     }
 
-    /// Squares that a fit of a set has to come below to be of use: those that are known of it.
+    /// Returns the squares of the known fit of a set, which a new one has to fall below to be of use;
+    /// infinite if none is known.
     pub(crate) fn known_squares(&self, hypothesis: &Hypothesis) -> f64 {
         self.find(&hypothesis.candidates).map_or(f64::INFINITY, |known| known.squares)
     }
@@ -45,8 +48,10 @@ impl Archive {
         self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
     }
 
-    /// Whether the search was led by a set that is gone where every sample is `refined`, and has not looked around what is
-    /// left: the sets of those that stay, and the candidates without what none of them holds.
+    /// Returns the sets and candidates for another search, if this one was misled: its leading set is missing
+    /// from `refined`, the archive on every sample. These are the sets that `refined` has too, and the
+    /// candidates without the leader's members that no refined set holds. `None` if the search was not misled
+    /// or nothing would change.
     pub(crate) fn misled(
         &self,
         refined: &Self,
@@ -67,7 +72,7 @@ impl Archive {
         (others.len() < candidates.len() && !known.is_empty()).then_some((known, others))
     }
 
-    /// Takes a fit that is better than what is known of its set; a set with a vanished member is rejected.
+    /// Admits a fit if it is better than the known one of its set. A set with a vanished member is rejected.
     pub(crate) fn admit(&mut self, data: &Data, fit: Fit) {
         if vanished(data, &fit) {
             self.rejected.push(fit.hypothesis.candidates);
@@ -80,32 +85,35 @@ impl Archive {
         }
     }
 
-    /// Takes a set out.
+    /// Removes a set and rejects it.
     pub(crate) fn reject(&mut self, candidates: &[Candidate]) {
         self.fits.retain(|known| known.hypothesis.candidates != candidates);
         self.rejected.push(candidates.to_vec());
     }
 
-    /// The smallest autocorrelation time among the sets that fit nearly best: that of the richest adequate model.
+    /// Returns the autocorrelation time, in samples, of the set with the smallest squares: the richest
+    /// adequate model. 1 if the archive is empty.
     pub(crate) fn autocorrelation_time(&self) -> f64 {
         let best = self.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
         best.map_or(1.0, Fit::autocorrelation_time)
     }
 
-    /// Fits by the score that [`crate::evidence::score::score`] gives at an autocorrelation time, best first.
+    /// Returns the fits by their score ([`crate::evidence::score::score`]) at an autocorrelation time, best
+    /// first.
     pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
         let mut ranked: Vec<&Fit> = self.fits.iter().collect();
         ranked.sort_by(|a, b| score(b, time).total_cmp(&score(a, time)));
         ranked
     }
 
-    /// The best of these scores.
+    /// Returns the highest of these scores.
     pub(crate) fn highest(&self, time: f64) -> f64 {
         self.fits.iter().map(|fit| score(fit, time)).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// Whether a member is not what its name says, beside the swing as it is fitted.
+/// Returns `true` if the fitted values of a member are not those of the effect that its name stands for,
+/// given the fitted swing.
 pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
@@ -122,7 +130,7 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
     members.any(|(candidate, part)| !candidate.is_itself(part, &swing))
 }
 
-/// Members with a size at zero.
+/// Returns the members with a strength at zero.
 pub(crate) fn gone(data: &Data, fit: &Fit) -> Vec<Candidate> {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let members = fit.hypothesis.candidates.iter().zip(parts);
@@ -133,7 +141,8 @@ pub(crate) fn gone(data: &Data, fit: &Fit) -> Vec<Candidate> {
     members.filter(at_zero).map(|(candidate, _)| *candidate).collect()
 }
 
-/// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
+/// Returns `true` if a member has vanished: its strength is zero, or its shape reduces it to a simpler
+/// candidate or turns it into another one.
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parameters = fit.hypothesis.parameters(&data.facts);
     let calibrated = fit.hypothesis.calibrated.len();

@@ -1,9 +1,10 @@
-//! The search for the set of effects that the data ask for.
+//! Beam search for the set of effects that explains the data.
 //!
-//! One cause at a time is not enough: a second cause may help by 1 % alone and by 30 % once the first is in. So the
-//! first round proposes single candidates and pairs, jointly linearized; every later round linearizes anew at the
-//! best sets found so far and proposes what to add there, what to put in another's place, and what each member
-//! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
+//! Adding one cause at a time is not enough: a second cause may help by 1 % alone and by 30 % once the first
+//! is in the set. So the first round proposes single candidates and pairs, jointly linearized. Every later
+//! round linearizes anew at the best sets found so far. It proposes additions, replacements of members, and
+//! effects that each member is easily confused with. Every proposal is fitted in full; nothing is decided on
+//! a linearization.
 
 use crate::data::segments::Data;
 use crate::evidence::score::{score, squares_at};
@@ -23,14 +24,15 @@ use crate::search::weak_form::from_weak_form;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Squares relative to the smallest up to which a fit that has not converged goes on, and how many of those.
+/// Largest squares, relative to the smallest, at which a fit that has not converged is continued, and the
+/// largest number of such fits.
 const NEAR: f64 = 1.5;
 const POLISHED: usize = 6;
 
-/// Score behind the best from which on a set is not gone on from.
+/// Distance in score from the best beyond which a set is not expanded.
 const FAR_BEHIND: f64 = 30.0;
 
-/// Proposals at a fit: what to add.
+/// Proposes additions at a fit. `best` marks the best set.
 fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
     let &Asked { data, candidates, breadth, threshold, .. } = asked;
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
@@ -53,9 +55,10 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
             proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
-            // Where fewer are ranked than are added, any gain is enough.
+            // If fewer candidates are ranked than are added, any gain is enough.
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
-            // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
+            // A gain from a spectrum is less reliable than a linearization: at the best set such a candidate
+            // is tried in any case.
             let own = (*candidate, *gain);
             let is_worth_it = stands_alone(base, time, own, threshold, dictionary.frequencies);
             if (best || *gain > weakest) && is_worth_it {
@@ -66,8 +69,9 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
     proposals
 }
 
-/// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
-/// member too: begun here they often fit better than on their own.
+/// Proposes replacements of each member, linearized where the member is taken out: the candidates with the
+/// largest gains, and those that the member is easily confused with. Also returns the fits without the
+/// member: from this start they are often better than on their own.
 fn swaps(asked: &Asked<'_>, base: &Fit) -> (Vec<Proposal>, Vec<Fit>) {
     let &Asked { data, candidates, breadth, .. } = asked;
     let counted: Vec<Candidate> = base.hypothesis.counted().copied().collect();
@@ -89,7 +93,8 @@ fn swaps(asked: &Asked<'_>, base: &Fit) -> (Vec<Proposal>, Vec<Fit>) {
     (proposals.into_iter().flatten().collect(), dropped)
 }
 
-/// Fits proposals of sets that were not tried yet, and of those that begin closer to the data than they are known to end.
+/// Fits proposals of sets that were not tried yet, and of known sets that begin closer to the data than they
+/// ended.
 fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
     // A set may come with several shapes to begin from, but only in one round.
     let worth: Vec<bool> = proposals
@@ -101,7 +106,7 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
     tried.extend(waiting.iter().map(|proposal| proposal.hypothesis.ranks()));
     let time = pool.autocorrelation_time();
     let best = pool.highest(time);
-    // What ends farther behind than anything is gone on from need not be fitted to its end.
+    // A set that would end too far behind to be expanded need not be fitted to its end.
     let of_use = |proposal: &Proposal| {
         squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
     };
@@ -118,7 +123,7 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
     }
 }
 
-/// The first round: single candidates and pairs at the calibrated simulator.
+/// Runs the first round: single candidates and pairs at the recalibrated simulator.
 fn begin(asked: &Asked<'_>, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>) {
     let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
     let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return };
@@ -148,7 +153,8 @@ fn begin(asked: &Asked<'_>, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>
     settle(data, pool, tried, proposals);
 }
 
-/// How far a search has got: what it has fitted, and what need not be looked at again. Sets are known by their ranks.
+/// State of a search: the fits, and the sets that need not be examined again. Sets are identified by their
+/// ranks.
 pub(crate) struct Explored {
     pub(crate) archive: Archive,
     tried: BTreeSet<Vec<usize>>,
@@ -156,7 +162,7 @@ pub(crate) struct Explored {
     unmasked: BTreeSet<Vec<usize>>,
 }
 
-/// Searches sets of candidates. Where there are `known` sets already, the search goes on from these.
+/// Searches sets of candidates, starting from the `known` sets if there are any.
 pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
     let &Asked { data, calibrated, .. } = asked;
     let mut archive = Archive::of(calibrated);
@@ -175,7 +181,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
     explored
 }
 
-/// Goes on from the best sets that were not gone on from yet.
+/// Continues a search from the best sets that were not expanded yet.
 pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
     let &Asked { data, breadth, threshold, .. } = asked;
     let Explored { archive: pool, tried, expanded, unmasked } = explored;
@@ -186,7 +192,8 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         let ranked = pool.ranked(time);
         let effects = || ranked.iter().filter(|fit| !fit.hypothesis.candidates.is_empty());
         let near = effects().take(breadth.beam).filter(|fit| before - score(fit, time) < FAR_BEHIND);
-        // What can sit where it likes may stand in for a plain law, and has no use for what is missing beside that law.
+        // A flexible effect may stand in for a plain law. What is missing beside that law would then not be
+        // found, so the best plain set is always expanded too.
         let plain = effects().find(|fit| fit.hypothesis.is_plain());
         let bases: Vec<Fit> = near
             .chain(plain)
@@ -200,7 +207,7 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
             bases.par_iter().enumerate().map(|(place, base)| moves(asked, base, place == 0)).collect();
         let mut proposals: Vec<Proposal> = Vec::new();
         for (own, dropped) in moves {
-            // What a better set has proposed already is begun from there.
+            // A set that a better one has proposed already begins from there.
             let known: BTreeSet<Vec<usize>> =
                 proposals.iter().map(|other| other.hypothesis.ranks()).collect();
             proposals.extend(own.into_iter().filter(|own| !known.contains(&own.hypothesis.ranks())));
@@ -221,18 +228,19 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
     without_members(data, pool);
 }
 
-/// Begins the best set once more with each shape that its members may have. Friction that stops the motion half a swing too early
-/// or too late has a hollow of its own for each such half swing, and what is added there mends what it does.
+/// Refits the best set from each shape that its members may have. Friction that stops the motion half a swing
+/// too early or too late has a local minimum for each such half swing, and effects added there compensate for
+/// the error.
 fn reshape(data: &Data, pool: &mut Archive) {
     let ranked = pool.ranked(pool.autocorrelation_time());
-    // Of no set nothing is begun.
+    // Without a set there is nothing to refit.
     let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
     take_in(data, pool, begun, Stopping::SEARCH);
 }
 
-/// Fits every part of the best set that was rejected, or is known to end farther from the data than it begins where the best set
-/// ended: begun at the recalibrated simulator it came to a minimum of its own, and what is beside it in the best set would seem to be
-/// needed.
+/// Refits every subset of the best set that was rejected, or whose known fit ended farther from the data than
+/// the subset begins at the parameters of the best set. Such a fit, begun at the recalibrated simulator,
+/// ended in a local minimum, and the other members of the best set would seem to be needed.
 fn without_members(data: &Data, pool: &mut Archive) {
     let ranked = pool.ranked(pool.autocorrelation_time());
     let Some(best) = ranked.first().map(|best| (*best).clone()) else { return };
@@ -248,7 +256,7 @@ fn without_members(data: &Data, pool: &mut Archive) {
     take_in(data, pool, begun, Stopping::FINAL);
 }
 
-/// What to fit around a set, and the sets that were fitted to find that out.
+/// Returns the proposals around a set, and the sets that were fitted to find them.
 fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fit>) {
     let &Asked { data, candidates, .. } = asked;
     let mut own = around(asked, base, is_best);
@@ -262,8 +270,9 @@ fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fi
     (own, dropped)
 }
 
-/// Takes leading sets out that are others in disguise once they are fitted to their end. What brings hidden motions into
-/// every segment creeps there for longer than a search waits, and all that is built on it would be for nothing.
+/// Rejects leading sets that turn out to be others in disguise once they are fitted to convergence. Effects
+/// with hidden motions in every segment converge slowly, for longer than a search waits, and a search built
+/// on such a set would be wasted.
 fn unmask(data: &Data, pool: &mut Archive, looked_at: &mut BTreeSet<Vec<usize>>) {
     loop {
         let time = pool.autocorrelation_time();
@@ -280,8 +289,8 @@ fn unmask(data: &Data, pool: &mut Archive, looked_at: &mut BTreeSet<Vec<usize>>)
     }
 }
 
-/// Fits whose steps were spent before they converged, and that are among the closest to the data all the same, go on: a
-/// second body converges slowly and would be judged by where it had got to.
+/// Continues fits that used up their steps before they converged and that are among the closest to the data.
+/// A second body converges slowly and would otherwise be judged by an intermediate point.
 fn polish(data: &Data, pool: &mut Archive) {
     let smallest = pool.fits.iter().map(|fit| fit.squares).fold(f64::INFINITY, f64::min);
     let mut near: Vec<Fit> =
@@ -307,7 +316,8 @@ mod tests {
     use record::{Clock, ClockChoice, Quantity, Record};
     use seed::Seed;
 
-    /// 25 s of a swing at 3.1 Hz that dry friction ends after 5 s, with noise of 0.5 mrad, and the names found in it.
+    /// Returns the names found in 25 s of a swing at 3.1 Hz that dry friction ends after 5 s, with noise of
+    /// 0.5 mrad.
     fn names(seed: u64) -> Vec<&'static str> {
         let effects = vec![Active::new("coulomb_friction", &[1.59]).unwrap()];
         let system = System::new(Nominal::new(1.0, 1.12, 377.0, 0.007).unwrap(), effects).unwrap();
@@ -323,8 +333,8 @@ mod tests {
         diagnose(&[observations], &believed, &Settings::default(), &|| 0.0).unwrap().verdict.effects
     }
 
-    /// Begun from nothing, dry friction comes to stop these swings half a period too early, and hysteresis with two others in
-    /// its train passes for the cause.
+    /// If its fit begins at zero, dry friction stops these swings half a period too early, and hysteresis
+    /// with two other effects passes for the cause.
     #[test]
     fn friction_that_ends_a_swing_is_found_from_what_stands_in_for_it() {
         for seed in [0, 1] {

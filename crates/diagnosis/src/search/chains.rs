@@ -1,8 +1,8 @@
-//! Chains: sets that grow by one effect at a time, from every class that could be the first.
+//! Chains: sets that grow by one effect at a time, started from every class that could be the first.
 //!
-//! A search that goes on from its best sets follows one line: where two effects together gain less than a third that
-//! stands in for both, neither is gone on from. A chain asks how far one gets with a given class in the set, whatever else
-//! leads, and takes at every step what gains most to first order.
+//! A search that expands its best sets follows one line: if two effects together gain less than a third one
+//! that stands in for both, neither of them is expanded. A chain finds out how far a set with a given class
+//! gets, whatever else leads. At every step it adds the effect with the largest first-order gain.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
@@ -16,10 +16,10 @@ use crate::search::gains::{singles, stands_out};
 use crate::search::proposals::{Proposal, additions, begins_closer, left_over, proposal};
 use rayon::prelude::*;
 
-/// Chains that are grown, each from another class.
+/// Number of chains, each from another class.
 const MOST: usize = 6;
 
-/// Grows chains to as many effects as a set can hold and takes every set on the way into an archive.
+/// Grows chains up to the largest size of a set, and admits every set on the way to the archive.
 pub(crate) fn chains(asked: &Asked<'_>, archive: &mut Archive) {
     let &Asked { data, calibrated, breadth, .. } = asked;
     let first: Vec<Vec<Proposal>> =
@@ -47,7 +47,8 @@ pub(crate) fn chains(asked: &Asked<'_>, archive: &mut Archive) {
     }
 }
 
-/// A fit of a set without those of its members that end at no size: the known one, if it does not begin closer than that ends.
+/// Returns a fit of a set without those of its members that end at strength zero: the known fit, unless the
+/// set begins closer to the data than that fit ends.
 fn fitted(data: &Data, archive: &Archive, set: Proposal) -> Option<Fit> {
     let known = archive.find(&set.hypothesis.candidates).cloned();
     if let Some(known) = known.filter(|_| !begins_closer(data, archive, &set)) {
@@ -60,7 +61,7 @@ fn fitted(data: &Data, archive: &Archive, set: Proposal) -> Option<Fit> {
     }
 }
 
-/// What could be added to a set and stands out there: of each class the best, the most gain first.
+/// Proposes additions to a set that stand out there: the best of each class, largest gain first.
 fn next(asked: &Asked<'_>, set: &Fit) -> Vec<Proposal> {
     let &Asked { data, candidates, threshold, .. } = asked;
     let own = &set.hypothesis.candidates;

@@ -1,4 +1,4 @@
-//! What candidates promise to first order, and what of that is worth a fit.
+//! First-order gains of candidates, and tests of which of them are worth a fit.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
@@ -7,7 +7,7 @@ use crate::model::dictionary::{Dictionary, Gain};
 use crate::noise::spectrum::DECAYS;
 use crate::search::proposals::{Proposal, additions, proposal};
 
-/// Gains of single entries, the best shape of each candidate, best first.
+/// Returns the gains of single entries, with the best shape of each candidate, largest first.
 pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
     let mut best: Vec<(Candidate, Gain)> = Vec::new();
     for (index, entry) in dictionary.entries.iter().enumerate() {
@@ -23,7 +23,7 @@ pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
     gains
 }
 
-/// Joint gains of two candidates, the best shapes of each pair, best first.
+/// Returns the joint gains of two candidates, with the best shapes of each pair, largest first.
 pub(crate) fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
     let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
     for (first, one) in dictionary.entries.iter().enumerate() {
@@ -45,13 +45,13 @@ pub(crate) fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
     gains
 }
 
-/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
+/// Autocorrelation time, in samples, up to which a residual counts as white: it then hides nothing more.
 pub(crate) const WHITE: f64 = 1.5;
 
-/// Part of the threshold that the linearized gain has to promise at a white residual.
+/// Share of the threshold that the linearized gain has to reach at a white residual.
 const PROMISE: f64 = 0.5;
 
-/// Every candidate alone, at the best of its shapes.
+/// Proposes every candidate alone, at its best shape.
 pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> Vec<Proposal> {
     let linear = singles(dictionary);
     let linear = linear.iter().map(|gain| additions(&data.facts, dictionary, gain));
@@ -59,20 +59,20 @@ pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> V
     linear.chain(further).map(|added| proposal(data, calibrated, &[], &added)).collect()
 }
 
-/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
-/// show only once the first is in. The best of many frequencies promises something where there is nothing:
-/// the logarithm of how many `looked` at there were, for a sine and a cosine in white noise.
+/// Returns `true` if a linearized gain is worth a fit. If the residual still has structure, any gain is: a
+/// second cause may show only once the first is in the set. The best of many frequencies has a gain even in
+/// white noise: for a sine and a cosine, the logarithm of the number of frequencies `looked` at.
 pub(crate) fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
     time > WHITE || stands_out(base, time, gain, threshold, looked)
 }
 
-/// Whether a linearized gain would count by itself, however much structure is left beside it.
+/// Returns `true` if a linearized gain would count by itself, however much structure is left beside it.
 pub(crate) fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
     base.nats_behind(base.squares - gain, time) > PROMISE * threshold + looked.ln()
 }
 
-/// The same of candidates that no columns stand for: those bring start states of their own into every
-/// segment, and a line in the spectrum of many short ones has to be worth these.
+/// Returns `true` if the gain of a candidate without columns stands out. Such a candidate adds start states
+/// to every segment, and a line in the spectrum of many short segments has to outweigh their price.
 pub(crate) fn stands_alone(
     base: &Fit,
     time: f64,

@@ -1,4 +1,4 @@
-//! The search over sets of effects.
+//! Search over sets of effects.
 
 pub(crate) mod alternatives;
 pub(crate) mod archive;

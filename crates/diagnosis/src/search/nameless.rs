@@ -1,10 +1,11 @@
-//! Torques without a name in the place of effects that have one.
+//! Torques without a name in the place of named effects.
 //!
-//! What no law of the vocabulary explains is soaked up by several effects at once, and each of these then seems to be
-//! needed. A law that is none of them but explains the same in one piece shows that they are not. Such laws are fitted
-//! wherever the best set of all has several members or one that not every mechanism has, beside the best sets of plain laws and in the place of
-//! each class of the best of them: a torque along the position, and a damping and a stiffness of higher order, alone and together. The
-//! first is also fitted beside the best set of each size that is made of plain laws and of what the measuring chain does.
+//! A law that the vocabulary lacks is absorbed by several effects at once, and each of them then seems to be
+//! needed. If a single other law explains the same, they are not needed. Such laws are a torque along the
+//! position, and a damping and a stiffness of higher order, alone and together. They are fitted if the best
+//! set has several members or one that is no plain law: beside the best sets of plain laws, and in the place
+//! of each class of the best of these. The torque along the position is also fitted beside the best set of
+//! each size that consists of plain laws and effects of the measurement chain.
 
 use crate::data::segments::Data;
 use crate::evidence::weights::{EVEN, Weighed, Weighing};
@@ -16,14 +17,14 @@ use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use rayon::prelude::*;
 
-/// Sets of plain laws that they are fitted beside.
+/// Number of sets of plain laws beside which they are fitted.
 const SETS: usize = 2;
 
-/// Takes the best sets of plain laws with a torque without a name into an archive.
+/// Fits the best sets of plain laws with a torque without a name, and admits them to the archive.
 pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
     let weighing = Weighing::of(data, calibrated, archive, vocabulary);
     let weighed = weighing.weigh(archive);
-    // Of a single law that every mechanism has nothing is asked: there is nothing that a law in one piece could spare.
+    // A single plain law is not questioned: one unlisted law could not replace several effects there.
     let is_plain = |best: &Fit| best.hypothesis.is_plain() && best.hypothesis.counted().count() < 2;
     if weighed.first().is_none_or(|best| is_plain(best.fit)) {
         return;
@@ -47,8 +48,9 @@ pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, voc
     }
 }
 
-/// The best set of each size that is made of plain laws and of what the measuring chain does, but for those that are `known`: what a
-/// larger one explains beside it may be a torque along the position.
+/// Returns the best set of each size that consists of plain laws and effects of the measurement chain, except
+/// the `known` ones. A torque along the position may explain what a larger set explains with additional
+/// effects.
 fn of_each_size<'b>(weighed: &[Weighed<'b>], known: &[&'b Fit]) -> Vec<&'b Fit> {
     let is_simple = |own: &Candidate| own.is_plain() || own.system().is_none();
     let size = |fit: &Fit| fit.hypothesis.counted().count();
@@ -62,7 +64,7 @@ fn of_each_size<'b>(weighed: &[Weighed<'b>], known: &[&'b Fit]) -> Vec<&'b Fit> 
     best
 }
 
-/// Some sets, and for each class of the first of these the best plain set without it.
+/// Returns the given sets and, for each class of the first of them, the best plain set without it.
 fn bases<'b>(weighed: &[Weighed<'b>], plain: &[&'b Fit]) -> Vec<&'b Fit> {
     let mut bases = plain.to_vec();
     let all = || weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain());
@@ -74,13 +76,13 @@ fn bases<'b>(weighed: &[Weighed<'b>], plain: &[&'b Fit]) -> Vec<&'b Fit> {
     bases
 }
 
-/// A set with laws of higher order beside it, begun where the set ended.
+/// Fits a set with laws of higher order beside it, starting where the set ended.
 fn with(data: &Data, set: &Fit, laws: &[Candidate]) -> Option<Fit> {
     if laws.iter().any(|law| set.hypothesis.knows(*law)) {
         return None;
     }
     let hypothesis = set.hypothesis.with(&[set.hypothesis.candidates.as_slice(), laws].concat());
-    // Their parameters come last: they are behind every candidate.
+    // Their parameters come last: in the vocabulary's order they follow every candidate.
     let mut globals = set.point.globals.clone();
     globals.extend(laws.iter().flat_map(|law| law.parameters(&data.facts)).map(|_| 0.0));
     let point = Point { globals, starts: set.point.starts.clone() };

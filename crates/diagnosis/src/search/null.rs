@@ -1,4 +1,4 @@
-//! What the best of many candidates gains by chance.
+//! Null distribution of the largest gain among many candidates.
 
 use crate::model::dictionary::Dictionary;
 use crate::model::matrices::{element, entry};
@@ -8,23 +8,24 @@ use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 
-/// Draws of the null.
+/// Number of draws of the null.
 const DRAWS: usize = 1000;
 
-/// The largest gain of a single candidate, in noise variances, that is exceeded with a given probability where the
-/// calibrated simulator is right and the noise white.
+/// Returns the largest gain of a single candidate, in noise variances, that chance exceeds with a given
+/// probability if the calibrated simulator is right and the noise white.
 ///
-/// A parametric bootstrap in the space of the scores: under the null they are Gaussian with the dictionary's
-/// products as covariance, exactly so for Gaussian noise on this record's own times. The maximum runs over
-/// every candidate, shape and sign that the dictionary has columns for: a second body, which has none, pays
-/// for its lines by itself.
+/// This is a parametric bootstrap in the space of the scores: under the null they are Gaussian with the
+/// dictionary's products as covariance, exactly so for Gaussian noise at this record's own times. The maximum
+/// runs over every candidate, shape and sign that the dictionary has columns for. A second body has no
+/// columns; its lines are charged for separately.
 pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) -> f64 {
     let width = dictionary.columns.ncols();
     if width == 0 {
         return crate::noise::statistics::chi_squared_above(1.0, probability);
     }
-    // In units of the columns' own lengths: they differ by many orders of magnitude. Columns of one grid are nearly
-    // dependent, so the root of their products comes from eigenvalues, not from a triangular factor.
+    // The columns are scaled to unit length: their lengths differ by many orders of magnitude. Columns of one
+    // grid are nearly dependent, so the root of their products comes from eigenvalues, not from a triangular
+    // factor.
     let scale = dictionary.products.diagonal().map(f64::sqrt);
     let cosines = DMatrix::from_fn(width, width, |i, j| {
         let length = element(&scale, i) * element(&scale, j);
@@ -44,7 +45,7 @@ pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) 
         .map(|_| {
             let white = DVector::from_fn(width, |_, _| StandardNormal.sample(&mut generator));
             drawn.scores = &factor * white;
-            // Without a column nothing is gained.
+            // Without a column there is no gain.
             singles(&drawn).first().map_or(0.0, |gain| gain.squares)
         })
         .collect();

@@ -1,8 +1,8 @@
-//! Plain laws, all of their sets.
+//! All sets of plain laws.
 //!
-//! Dry friction, drag, a spring that bends and a weight are what every mechanism has. A search that follows the gain
-//! goes on from whatever gains most, and an effect that can sit where it likes on a record gains more than the law that
-//! made the record. So all sets of plain laws are fitted before any is judged.
+//! Dry friction, drag, a nonlinear spring and a weight occur in every mechanism. A search that follows the
+//! gain expands whatever gains most, and an effect that can act anywhere on a record gains more than the law
+//! that made the record. So all sets of plain laws are fitted before any set is judged.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
@@ -14,8 +14,8 @@ use crate::search::gains::singles;
 use crate::search::proposals::{Proposal, additions, proposal, take_in};
 use rayon::prelude::*;
 
-/// Fits every set of the plain laws among the candidates and takes those that keep all members into an archive. A set
-/// that a law leaves no squares to take from in its direction is not fitted: the law has no size there.
+/// Fits every set of the plain laws among the candidates, and admits those that keep all members to the
+/// archive. If a law has no gain beside a set, the two together are not fitted: its strength would be zero.
 pub(crate) fn plain_family(data: &Data, calibrated: &Fit, candidates: &[Candidate], archive: &mut Archive) {
     let mut family: Vec<Fit> = vec![calibrated.clone()];
     for &law in candidates.iter().filter(|candidate| candidate.is_plain()) {
@@ -30,7 +30,7 @@ pub(crate) fn plain_family(data: &Data, calibrated: &Fit, candidates: &[Candidat
         let begun: Vec<Proposal> = begun.into_iter().flatten().collect();
         let sets: Vec<Vec<Candidate>> = begun.iter().map(|own| own.hypothesis.candidates.clone()).collect();
         take_in(data, archive, begun, Stopping::SEARCH);
-        // What is known of a set may be a better fit than this one.
+        // The archive may know a better fit of a set than this one.
         family.extend(sets.iter().filter_map(|set| archive.find(set).cloned()));
     }
 }

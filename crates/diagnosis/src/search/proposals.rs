@@ -1,4 +1,5 @@
-//! Sets to fit, and where their fits begin: at what a fit has found, with members left out, added or replaced.
+//! Proposals: sets to fit with the points where their fits begin, derived from a fit by removing, adding or
+//! replacing members.
 
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
@@ -11,23 +12,25 @@ use crate::model::hypothesis::Hypothesis;
 use crate::search::archive::{Archive, gone};
 use rayon::prelude::*;
 
-/// Part of its linearized size that an effect begins a fit with.
+/// Share of its linearized strength with which an effect begins a fit.
 const FIRST_SIZE: f64 = 1e-3;
 
-/// Squares where a set begins, relative to those it is known to end with, below which it is begun once more.
+/// Squares at the start of a set, relative to those of its known fit, below which it is fitted again.
 pub(crate) const CLOSER: f64 = 0.9;
 
-/// Log likelihood by which it begins closer for certain, be the squares mostly those of the noise.
+/// Gain in log likelihood, in nats, above which a set begins closer for certain, even if most of the squares
+/// are noise.
 const SURELY: f64 = 10.0;
 
-/// A set to fit and where to begin.
+/// Set to fit, and the point where its fit begins.
 #[derive(Debug, Clone)]
 pub(crate) struct Proposal {
     pub(crate) hypothesis: Hypothesis,
     pub(crate) point: Point,
 }
 
-/// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
+/// Merges a candidate into its generalization if a set has both: the general one takes over the special one's
+/// size.
 fn absorb(members: &mut Vec<(Candidate, Vec<f64>)>) {
     let special: Vec<(Candidate, Candidate)> =
         members.iter().filter_map(|(general, _)| Some((*general, general.generalizes()?))).collect();
@@ -43,8 +46,8 @@ fn absorb(members: &mut Vec<(Candidate, Vec<f64>)>) {
     }
 }
 
-/// A set and a start for it: what a fit has found, with some candidates left out and others added. A member that is added
-/// once more takes the size in.
+/// Creates a proposal from the result of a fit, without some candidates and with others added. If an added
+/// candidate is a member already, its size is added to the member's.
 pub(crate) fn proposal(
     data: &Data,
     base: &Fit,
@@ -63,7 +66,7 @@ pub(crate) fn proposal(
         .collect();
     for (candidate, values) in added {
         match members.iter_mut().find(|(own, _)| own == candidate).map(|(_, own)| own.as_mut_slice()) {
-            // What adds no value moves nothing.
+            // An addition without values changes nothing.
             Some([first, ..]) => *first += values.first().copied().unwrap_or_default(),
             _ => members.push((*candidate, values.clone())),
         }
@@ -78,7 +81,7 @@ pub(crate) fn proposal(
     Proposal { hypothesis, point: Point { globals, starts } }
 }
 
-/// The candidates of a gain, with parameters to begin a fit with.
+/// Returns the candidates of a gain, with parameters to begin a fit with.
 pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)> {
     let mut coefficients = gain.coefficients.as_slice();
     gain.entries
@@ -88,7 +91,7 @@ pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) ->
             let (own, rest) = coefficients.split_at_checked(entry.columns.len())?;
             coefficients = rest;
             let mut parameters = dictionary.parameters(index, own);
-            // The coefficients suppose that calibration and start states have moved along, which the fit has
+            // The coefficients assume that calibration and start states have moved along, which the fit has
             // still to do: sizes begin small and grow in its first steps, with everything else.
             for (value, parameter) in parameters.iter_mut().zip(entry.candidate.parameters(facts)) {
                 let is_its_own_shape = parameter.strength && parameter.upper.is_finite();
@@ -101,8 +104,9 @@ pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) ->
         .collect()
 }
 
-/// Puts a member's generalization in its place at each of its shapes, with half the member's size beyond it. The
-/// linearization cannot tell these: at the special case the shape means nothing.
+/// Proposes to replace each member by its generalization, at each of its shapes. The first parameter keeps
+/// the member's size, further strengths begin at half of it. The linearization cannot distinguish these: at
+/// the special case the shape has no effect.
 pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let mut proposals = Vec::new();
@@ -124,7 +128,8 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
     proposals
 }
 
-/// A set begun where it ended but for one member's shape, which is each of those that it may begin with.
+/// Proposes to refit a set from its end point, with the shape of one member replaced by each shape that it
+/// may begin with.
 pub(crate) fn reshaped(data: &Data, ended: &Fit) -> Vec<Proposal> {
     let parts = ended.hypothesis.parts(&data.facts, &ended.point.globals);
     let mut begun = Vec::new();
@@ -145,8 +150,8 @@ pub(crate) fn reshaped(data: &Data, ended: &Fit) -> Vec<Proposal> {
     begun
 }
 
-/// Puts what a member tends to in its place, with the member's size: friction that begins from nothing often ends where it
-/// stops the motion half a swing too early or too late.
+/// Proposes to replace each member by the simpler effect that it tends to, with the member's size. Friction
+/// that begins at zero often ends at a point where it stops the motion half a swing too early or too late.
 pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let members = base.hypothesis.candidates.iter().zip(parts);
@@ -158,13 +163,15 @@ pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> V
     simpler.collect()
 }
 
-/// What is left of a set without those of its members that ended at no size, begun where it ended; `None` where none did.
+/// Proposes a set without those of its members that ended at strength zero, begun where the set ended; `None`
+/// if there are none.
 pub(crate) fn left_over(data: &Data, ended: &Fit) -> Option<Proposal> {
     let gone = gone(data, ended);
     (!gone.is_empty()).then(|| proposal(data, ended, &gone, &[]))
 }
 
-/// Whether a set begins closer to the data than where it is known to end: it had come to a minimum of its own.
+/// Returns `true` if a set begins closer to the data than its known fit ends: that fit ended in a local
+/// minimum.
 pub(crate) fn begins_closer(data: &Data, pool: &Archive, proposal: &Proposal) -> bool {
     pool.find(&proposal.hypothesis.candidates).is_some_and(|known| {
         let begin = squares(data, &proposal.hypothesis, &proposal.point);
@@ -173,7 +180,8 @@ pub(crate) fn begins_closer(data: &Data, pool: &Archive, proposal: &Proposal) ->
     })
 }
 
-/// Fits proposals side by side; each fit is sequential, and the order of the answers is that of the proposals.
+/// Fits proposals in parallel. Each fit is sequential, and the fits come in the order of the proposals;
+/// failed ones are left out.
 pub(crate) fn fit_all(
     data: &Data,
     proposals: &[Proposal],
@@ -186,7 +194,8 @@ pub(crate) fn fit_all(
     fits.into_iter().flatten().collect()
 }
 
-/// Fits proposals where no fit of the archive has begun yet. A set that is known is of use only where it ends closer.
+/// Fits proposals at whose points no fit of the archive has begun yet. A known set is of use only if it ends
+/// closer.
 pub(crate) fn fit_new(
     data: &Data,
     archive: &mut Archive,
@@ -201,7 +210,7 @@ pub(crate) fn fit_new(
     })
 }
 
-/// The same, and takes the fits in.
+/// Fits such proposals and admits the fits to the archive.
 pub(crate) fn take_in(data: &Data, archive: &mut Archive, proposals: Vec<Proposal>, effort: Stopping) {
     for fit in fit_new(data, archive, proposals, |_| effort) {
         archive.admit(data, fit);
@@ -225,7 +234,7 @@ mod tests {
     const DRAG: Candidate = Candidate::new(&QuadraticDrag);
     const HYSTERESIS: Candidate = Candidate::new(&Hysteresis);
 
-    /// A decaying swing, and the simulator calibrated to it with members of some parameters.
+    /// A decaying swing, and the simulator calibrated to it with members at given parameters.
     fn swing(members: &[(Candidate, &[f64])]) -> (Data, Fit) {
         let (data, calibrated) = calibrated_swing();
         let added: Vec<(Candidate, Vec<f64>)> =
@@ -236,7 +245,7 @@ mod tests {
         (data, found)
     }
 
-    /// What the members begin with, calibration left out.
+    /// Returns the members' parameters at a point, without the calibrated coefficients.
     fn members(begin: &Fit, set: &Point) -> Vec<f64> {
         set.globals.iter().copied().skip(begin.hypothesis.calibrated.len()).collect()
     }

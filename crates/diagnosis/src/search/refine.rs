@@ -1,4 +1,4 @@
-//! The best sets once more, on every sample and to convergence.
+//! Refit of the best sets on every sample, to convergence.
 
 use crate::data::segments::Data;
 use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
@@ -10,20 +10,20 @@ use crate::search::archive::{Archive, vanished};
 use crate::search::proposals::{Proposal, generalized, left_over, proposal, take_in};
 use rayon::prelude::*;
 
-/// Sets that are refined in any case.
+/// Number of sets refined in any case.
 const FEWEST: usize = 3;
 
-/// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil,
-/// and nobody would mistake it for the best.
+/// Distance in nats from the best set beyond which a set is not refined: its probability would be nil, and
+/// nobody would mistake it for the best.
 const HOPELESS: f64 = 30.0;
 
-/// Sets that are fitted again on every sample, and as many of their rivals.
+/// Largest number of sets refitted on every sample, and of their rivals.
 const MOST: usize = 6;
 
-/// Refits the best [`MOST`] of weighed sets on other data with the same segments, as many more that differ from the best of
-/// their size in one member (its rivals), the best set with every class of effects and without every class of the
-/// best, and the best ones where nothing is left.
-/// What has been `refined` already, the calibrated simulator first, stays as it is.
+/// Refits weighed sets on other data with the same segments: the best [`MOST`], up to as many more that
+/// differ from the best of their size in one member (its rivals), the best set with every class of effects,
+/// the best set without every class of the best set, and the best ones if nothing is left. Sets that are
+/// already in `refined`, which begins with the recalibrated simulator, stay as they are.
 pub(crate) fn refine(
     data: &Data,
     refined: &Archive,
@@ -36,7 +36,7 @@ pub(crate) fn refine(
     let mut all: Vec<Fit> = refined.find(&[]).cloned().into_iter().collect();
     let mut rejected = rejected.to_vec();
     let mut waiting = ranked.as_slice();
-    // Where none of the best survives on every sample, the next ones have their turn.
+    // If none of the best sets keeps its members on every sample, the next ones follow.
     while let (1, [best, ..]) = (all.len(), waiting) {
         let near = waiting
             .iter()
@@ -53,7 +53,7 @@ pub(crate) fn refine(
                 return Some(known.clone());
             }
             let found = fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()?;
-            // What does not count and has no size here takes nothing with it.
+            // A vanished member that does not count as an effect is removed without rejecting the set.
             let left = left_over(data, &found);
             match left.filter(|left| left.hypothesis.counted().eq(found.hypothesis.counted())) {
                 Some(left) => fit(data, &left.hypothesis, left.point, Moving::All, Stopping::FINAL).ok(),
@@ -67,16 +67,17 @@ pub(crate) fn refine(
         all.extend(fits);
     }
     let mut refined = Archive::from(all, rejected);
-    // A special case and what it is a case of are judged on the same samples. Fits stand in the order of their evidence.
+    // A special case and its generalization are judged on the same samples. The fits are in the order of
+    // their evidence.
     if let Some(best) = refined.fits.iter().find(|fit| !fit.hypothesis.candidates.is_empty()).cloned() {
         take_in(data, &mut refined, generalized(data, &best, candidates), Stopping::FINAL);
     }
     refined
 }
 
-/// Of sets that wait, those that are refined with a batch of the best: see [`refine`].
+/// Selects, from the waiting sets, those that are refined with a batch of the best; see [`refine`].
 fn chosen<'w>(best: &Fit, batch: &[&Weighed<'w>], waiting: &[&Weighed<'w>]) -> Vec<&'w Fit> {
-    // On few samples spurious members come cheaply: the best set of every size has its rivals looked at.
+    // On few samples spurious members come cheaply, so the rivals of the best set of every size are examined.
     let is_rival = |w: &&&Weighed<'_>| {
         let own = &w.fit.hypothesis.candidates;
         let best = batch.iter().find(|other| other.fit.hypothesis.candidates.len() == own.len());
@@ -100,20 +101,21 @@ fn chosen<'w>(best: &Fit, batch: &[&Weighed<'w>], waiting: &[&Weighed<'w>]) -> V
     chosen
 }
 
-/// The members of a set that do not count as effects, with their parameters: how the sensor shows the motion is the same
-/// whatever moves it, and sets with and without it are not compared.
+/// Returns the members of a set that do not count as effects, with their parameters. How the sensor shows the
+/// motion is the same whatever moves it, so sets with and without such a member are not compared.
 fn uncounted(data: &Data, set: &Fit) -> Vec<(Candidate, Vec<f64>)> {
     let parts = set.hypothesis.parts(&data.facts, &set.point.globals);
     let members = set.hypothesis.candidates.iter().zip(parts).filter(|(own, _)| !own.counts());
     members.map(|(own, part)| (*own, part.to_vec())).collect()
 }
 
-/// Those of some effects that a set has not.
+/// Returns those of the effects that a set lacks.
 fn absent(set: &Fit, effects: &[(Candidate, Vec<f64>)]) -> Vec<(Candidate, Vec<f64>)> {
     effects.iter().filter(|(own, _)| !set.hypothesis.candidates.contains(own)).cloned().collect()
 }
 
-/// The fit of a set with one member left out, and what that costs: begun where the set was.
+/// Fits a set without some of its members, starting where the set ended. `keep` selects the members by their
+/// index.
 pub(crate) fn without(
     data: &Data,
     full: &Fit,

@@ -1,9 +1,9 @@
-//! Where a second body on a spring would show in a driven record, to first order.
+//! Search for a second body on a spring in a driven record, to first order.
 //!
 //! A body of inertia J, tied to the first by a spring and a damper of its own, moves by δ against it:
-//! δ̈ + 2·r·δ̇ + ω²·δ = −θ̈, and pulls at it with J·(ω²·δ + 2·r·δ̇). Along an observed motion θ that is a known
-//! function of ω and r times J. A record that is released once shows a second mode as a line that decays; one that
-//! is driven all along shows it wherever the input has power, and as no line.
+//! δ̈ + 2·r·δ̇ + ω²·δ = −θ̈, and pulls at it with J·(ω²·δ + 2·r·δ̇). Along an observed motion θ this torque
+//! is J times a known function of ω and r. A record that is released once shows a second mode as a decaying
+//! line. A record that is driven throughout shows it wherever the input has power, and not as a line.
 
 use crate::data::segments::Data;
 use crate::model::candidates::Mode;
@@ -12,18 +12,19 @@ use crate::model::tangent::{Path, Step, matrix, stack};
 use crate::noise::spectrum::that_lie_apart;
 use nalgebra::{DMatrix, Vector2};
 
-/// Ratio of neighboring frequencies of the second body.
+/// Ratio of neighboring frequencies on the grid of second bodies.
 const FINE: f64 = 1.03;
 
-/// Its rate of decay, as a part of its frequency: as wide as the grid is fine.
+/// Decay rate of the second body relative to its frequency; the line is then about as wide as a step of the
+/// grid.
 const WIDTH: f64 = 0.02;
 
-/// Ratio of frequencies from which on two are not the same one.
+/// Ratio of frequencies above which two modes count as different.
 const APART: f64 = 1.1;
 
-/// The most promising second bodies, the best first; none for records without an input.
+/// Returns the `most` second bodies with the largest gains, best first; none for records without an input.
 ///
-/// `residual` is projected on what the fit may not move.
+/// `residual` is projected on what the fit cannot move.
 pub(crate) fn driven_modes(
     data: &Data,
     paths: &[Path],
@@ -65,8 +66,8 @@ pub(crate) fn driven_modes(
     that_lie_apart(modes, |one, other| ratio(one, other) > APART.ln(), most)
 }
 
-/// The torque of a second body of inertia 1 on the first, along a path that it begins in step with; its
-/// acceleration is linear between samples.
+/// Returns the torque of a second body of inertia 1 on the first along a path, at whose beginning both move
+/// together. The acceleration is linear between samples.
 fn pull(path: &Path, frequency: f64, rate: f64) -> Vec<f64> {
     let stiffness = frequency * frequency;
     let forces: Vec<f64> = path.motion.acceleration.iter().map(|acceleration| -acceleration).collect();
@@ -93,7 +94,7 @@ mod tests {
     use super::*;
     use crate::model::predictor::Motion;
 
-    /// At a steady swing θ = sin Ωt the pull settles to the imaginary part of
+    /// At a steady swing θ = sin Ωt the torque settles to the imaginary part of
     /// (ω² + 2irΩ)·Ω²/(ω² − Ω² + 2irΩ)·exp(iΩt).
     #[test]
     fn the_pull_is_that_of_the_second_bodys_equation() {

@@ -1,11 +1,12 @@
-//! Sets of plain laws begun from the equation of motion itself.
+//! Initial points for sets of plain laws from the weak form of the equation of motion.
 //!
-//! Fits of trajectories begin at the recalibrated simulator. Where a law that is missing outweighs what the simulator has, that is no
-//! place to begin: the best linear oscillator beside a spring that bends strongly under an input is one that the input does not
-//! move. The weak form needs no trajectory. Multiplied by a bump φ and integrated by parts over it, the equation of motion
-//! I·ẍ + c·ẋ + k·(x − x₀) = u + Σ bⱼ·τⱼ is linear in I, c, k, k·x₀ and bⱼ, with derivatives of φ in place of those of the record
-//! (Messenger and Bortz, "Weak SINDy for partial differential equations", Journal of Computational Physics 443, 2021). Noise
-//! biases what it gives, so that it is a place to begin and no answer.
+//! Fits of trajectories begin at the recalibrated simulator. That is a poor start if a missing law outweighs
+//! the laws of the simulator: if a spring stiffens strongly under an input, the closest linear oscillator is
+//! one that the input does not move. The weak form needs no trajectory. Multiplied by a bump φ and integrated
+//! by parts over it, the equation of motion I·ẍ + c·ẋ + k·(x − x₀) = u + Σ bⱼ·τⱼ is linear in I, c, k, k·x₀
+//! and bⱼ, with derivatives of φ in place of those of the record (Messenger and Bortz, "Weak SINDy for
+//! partial differential equations", Journal of Computational Physics 443, 2021). Noise biases the solution,
+//! so it is only a start for a fit.
 
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
@@ -24,21 +25,21 @@ use nalgebra::DMatrix;
 use record::Quantity;
 use std::f64::consts::TAU;
 
-/// Length of a bump in periods, and how many begin within its length.
+/// Length of a bump in periods, and the number of bumps that begin within one length.
 const PERIODS: f64 = 0.75;
 const OVERLAP: f64 = 4.0;
 
-/// Exponent of a bump (1 − s²)ⁿ.
+/// Exponent n of a bump (1 − s²)ⁿ.
 const EXPONENT: i32 = 4;
 
-/// Fewest samples that a bump is integrated over.
+/// Fewest samples in a bump.
 const FEWEST: usize = 8;
 
-/// Bumps for each number that is asked for, at least.
+/// Fewest bumps for each unknown.
 const ROWS: usize = 4;
 
-/// Fits the plain sets that the weak form prefers, one of each size, where they begin closer to the data than anything in
-/// the archive has ended.
+/// Fits the plain sets that the weak form prefers, one of each size, if they begin closer to the data than
+/// any fit of the archive ended.
 pub(crate) fn from_weak_form(data: &Data, calibrated: &Fit, candidates: &[Candidate], archive: &mut Archive) {
     let laws: Vec<Candidate> = candidates.iter().copied().filter(|law| law.is_plain()).collect();
     let Some(equations) = Equations::of(data, calibrated, &laws) else { return };
@@ -59,17 +60,18 @@ pub(crate) fn from_weak_form(data: &Data, calibrated: &Fit, candidates: &[Candid
     }
 }
 
-/// One row for each bump: what the equation's terms come to.
+/// Linear equations of the weak form, one row for each bump.
 struct Equations {
-    /// ∫φ̈·x, −∫φ̇·x, ∫φ·x and −∫φ: what inertia, damping, stiffness, and stiffness times rest angle stand before.
+    /// ∫φ̈·x, −∫φ̇·x, ∫φ·x and −∫φ: the factors of inertia, damping, stiffness, and stiffness times rest
+    /// angle.
     oscillator: Vec<[f64; 4]>,
-    /// ∫φ·u with the torques of known effects.
+    /// ∫φ·u, plus the integrals of the torques of known effects.
     torque: Vec<f64>,
     /// ∫φ·τ of every law's columns.
     laws: Vec<(Candidate, Vec<Vec<f64>>)>,
 }
 
-/// A set with coefficients, and the squares that the equations leave.
+/// Set with coefficients, and the squares that the equations leave.
 struct Solved {
     hypothesis: Hypothesis,
     globals: Vec<f64>,
@@ -77,7 +79,8 @@ struct Solved {
 }
 
 impl Equations {
-    /// None where the sensor shows no position or there are too few samples.
+    /// Returns the equations of a data set; `None` if the sensor does not show the position, if there are no
+    /// laws, or if there are too few samples.
     fn of(data: &Data, calibrated: &Fit, laws: &[Candidate]) -> Option<Self> {
         if data.quantity != Quantity::Position || laws.is_empty() {
             return None;
@@ -121,7 +124,8 @@ impl Equations {
         (!all.torque.is_empty()).then_some(all)
     }
 
-    /// Least squares over a set, whose bits name its members; none where a coefficient has a sign that it cannot have.
+    /// Solves the equations for a set by least squares; the bits of `set` are its members. `None` if a
+    /// coefficient that cannot be negative is.
     fn solved(&self, data: &Data, hypothesis: &Hypothesis, set: u32) -> Option<Solved> {
         let members = self.laws.iter().enumerate().filter(|(place, _)| set >> place & 1 == 1);
         let members: Vec<&(Candidate, Vec<Vec<f64>>)> = members.map(|(_, law)| law).collect();
@@ -146,7 +150,8 @@ impl Equations {
         Some(Solved { hypothesis: hypothesis.with(&set), globals, squares })
     }
 
-    /// The oscillator's coefficients, the laws' sizes, and the squares that they leave; what is not calibrated stays as it is stated.
+    /// Returns the oscillator's coefficients, the laws' sizes, and the squares that they leave. Coefficients
+    /// that are not calibrated keep their stated values.
     fn regressed(
         &self,
         hypothesis: &Hypothesis,
@@ -184,14 +189,14 @@ impl Equations {
     }
 }
 
-/// The least-squares solution of an overdetermined system, and the squares that it leaves.
+/// Returns the least-squares solution of an overdetermined system, and the squares that it leaves.
 fn least_squares(rows: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, f64)> {
     let count = rows.first()?.len();
     if rows.len() < ROWS * count {
         return None;
     }
     let design = DMatrix::from_fn(rows.len(), count, |row, column| {
-        // Every row has as many terms.
+        // Every row has the same number of terms.
         rows.get(row).and_then(|row| row.get(column)).copied().unwrap_or(0.0)
     });
     let right = DMatrix::from_column_slice(right.len(), 1, right);
@@ -201,7 +206,7 @@ fn least_squares(rows: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, f64)> {
     solution.iter().all(|value| value.is_finite()).then_some((solution, squares))
 }
 
-/// A segment as its readings show it.
+/// Segment with the velocity and the input torque at its samples.
 struct Seen<'s> {
     segment: &'s Segment,
     velocity: Vec<f64>,
@@ -213,12 +218,12 @@ struct Seen<'s> {
 impl<'s> Seen<'s> {
     fn of(data: &'s Data, segment: &'s Segment, gain: f64) -> Self {
         let command = data.inputs.get(segment.record).and_then(Option::as_ref);
-        // Where nothing acts there is no torque.
+        // Without an input there is no torque.
         let input = segment.times.iter().map(|time| command.map_or(0.0, |input| gain * held(input, *time)));
         Self { segment, velocity: slopes(&segment.times, &segment.values), input: input.collect(), command }
     }
 
-    /// Torques of an effect at the samples, one series for each of some values.
+    /// Returns the torques of an effect at the samples, one series for each of the values.
     fn columns(
         &self,
         law: Candidate,
@@ -244,12 +249,13 @@ impl<'s> Seen<'s> {
     }
 }
 
-/// Slopes from the samples before and after; those of the ends are their neighbors'.
+/// Returns the slopes at the samples, from those before and after. The slope at an end is that of its
+/// neighbor.
 fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
     let inner = times.iter().zip(times.iter().skip(2)).zip(values.iter().zip(values.iter().skip(2)));
     let inner: Vec<f64> = inner.map(|((from, to), (low, high))| (high - low) / (to - from)).collect();
     let ends = [inner.first().copied(), inner.last().copied()];
-    // Of fewer than three samples no slope is known.
+    // Fewer than three samples determine no slope.
     let [first, last] = ends.map(|end| end.unwrap_or(0.0));
     std::iter::once(first).chain(inner).chain([last]).take(times.len()).collect()
 }
@@ -261,7 +267,8 @@ struct Bump {
 }
 
 impl Bump {
-    /// A bump of a half width about a center, with the trapezoidal rule; none over too few samples.
+    /// Creates a bump with a half width about a center, by the trapezoidal rule; `None` if it covers too few
+    /// samples.
     fn about(center: f64, half: f64, times: &[f64]) -> Option<Self> {
         let first = times.partition_point(|time| *time <= center - half);
         let end = times.partition_point(|time| *time < center + half);
@@ -279,7 +286,7 @@ impl Bump {
         Some(Self { first, weights: (first..end).filter_map(weight).collect() })
     }
 
-    /// ∫ of a series times φ, φ̇ and φ̈.
+    /// Returns the integrals of a series times φ, φ̇ and φ̈.
     fn integrals(&self, values: &[f64]) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for (weights, value) in self.weights.iter().zip(values.iter().skip(self.first)) {
@@ -291,7 +298,7 @@ impl Bump {
     }
 }
 
-/// Bumps of a length over a segment, each beginning a part of it after the one before.
+/// Returns bumps of a length over a segment, [`OVERLAP`] of which begin within one length.
 fn bumps(times: &[f64], length: f64) -> Vec<Bump> {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };
     let count = ((last - first - length) / length * OVERLAP).floor();
@@ -306,7 +313,8 @@ fn bumps(times: &[f64], length: f64) -> Vec<Bump> {
 mod tests {
     use super::{Bump, slopes};
 
-    /// ∫(1 − s²)⁴ ds = 256/315; integrated by parts, φ̈ gives the second derivative of a parabola, φ̇ minus the slope of a line.
+    /// ∫(1 − s²)⁴ ds = 256/315. Integrated by parts, φ̈ gives the second derivative of a parabola, φ̇ minus
+    /// the slope of a line.
     #[test]
     fn bumps_differentiate_what_they_are_integrated_with() {
         let times: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.01).collect();

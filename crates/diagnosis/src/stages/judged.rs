@@ -1,4 +1,4 @@
-//! Which classes of effects the records speak for, and the set that stands for them.
+//! Judgment: probabilities of the classes of effects, and the set that represents the probable ones.
 
 use super::{Measured, Refined, Request};
 use crate::answer::EffectClass;
@@ -11,7 +11,8 @@ use crate::evidence::weighed_sets::Records;
 use crate::fit::fitted::Fit;
 use std::cell::OnceCell;
 
-/// Log evidence by which the set of all likely classes may predict worse than the best set of some of them.
+/// Log evidence in nats by which the set of all likely classes may predict worse than the best set of some of
+/// them.
 const WORSE: f64 = 3.0;
 
 /// Classes with their probabilities, and the repaired simulator.
@@ -19,12 +20,12 @@ pub(crate) struct Judged<'a> {
     pub(crate) inclusion: Inclusion<'a>,
     pub(crate) classes: Vec<EffectClass>,
     pub(crate) held: Held<'a>,
-    /// A constant torque that does what recalibration does.
+    /// Constant torque that explains the whole recalibration.
     pub(crate) shift: Option<Shift>,
 }
 
 impl<'a> Judged<'a> {
-    /// `completed` has room for a set that no search has tried: that of all likely classes.
+    /// Judges the refined sets. `completed` holds a set that no search has tried: that of all likely classes.
     pub(crate) fn of(
         request: &Request<'a>,
         measured: &Measured,
@@ -44,7 +45,7 @@ impl<'a> Judged<'a> {
         let classes = inclusion.classes(witness, &request.settings.seed);
         let names = likely(&classes);
         let within = inclusion.within(&names);
-        // Where no set is within the names nothing is named.
+        // If no set is within these classes, nothing is named.
         let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
         if let Some(fit) = inclusion.completed(&refined.data, &names) {
             // Evidence is relative to the set without effects.

@@ -1,4 +1,4 @@
-//! What the records hold: samples to believe, segments, findings on the measurement chain.
+//! Data from the records: trusted samples, segments, and findings on the measurement chain.
 
 use super::Request;
 use crate::answer::Finding;
@@ -10,13 +10,13 @@ use crate::measurement::signatures;
 
 /// Records, cut into segments.
 pub(crate) struct Measured {
-    /// Which samples of each record are no outliers, and which of these come after its release.
+    /// Samples of each record that are not outliers. `free` marks those of them that come after its release.
     pub(crate) kept: Vec<Vec<bool>>,
     pub(crate) free: Vec<Vec<bool>>,
     pub(crate) data: Data,
-    /// Whether no segment was left out.
+    /// `true` if no segment was left out.
     pub(crate) is_whole: bool,
-    /// Share of the samples that is looked at.
+    /// Share of the samples that is used.
     pub(crate) samples_used: f64,
     pub(crate) findings: Vec<Finding>,
 }
@@ -36,7 +36,7 @@ impl Measured {
     }
 }
 
-/// The samples that are kept of each record, less those before its release; and what is said of these.
+/// Returns the kept samples of each record without those before its release, and the findings on the latter.
 fn free(records: &[Observations], kept: &[Vec<bool>]) -> (Vec<Vec<bool>>, Vec<Finding>) {
     let mut findings = Vec::new();
     let free = records.iter().zip(kept).map(|(record, kept)| {

@@ -1,4 +1,4 @@
-//! The stages of a diagnosis, each with what it hands on to the next.
+//! Stages of a diagnosis, each with the result that the next one needs.
 
 mod judged;
 mod measured;
@@ -22,7 +22,7 @@ use crate::error::DiagnosisError;
 use crate::settings::Settings;
 use dynamics::NominalSimulator;
 
-/// What is asked.
+/// Request for a diagnosis: records, nominal simulator and settings.
 #[derive(Clone, Copy)]
 pub(crate) struct Request<'a> {
     pub(crate) records: &'a [Observations],
@@ -30,7 +30,7 @@ pub(crate) struct Request<'a> {
     pub(crate) settings: &'a Settings,
 }
 
-/// How long each stage took, and who may end the work between two.
+/// Stopwatch for the stages, with the caller's test of whether to continue.
 pub(crate) struct Stopwatch<'a> {
     seconds: &'a dyn Fn() -> f64,
     goes_on: &'a dyn Fn(&'static str) -> bool,
@@ -43,16 +43,16 @@ impl<'a> Stopwatch<'a> {
         Self { seconds, goes_on, last: seconds(), stages: Vec::new() }
     }
 
-    /// Hands a stage's result on, and notes the time since the last one.
+    /// Returns a stage's result, and records the time since the last stage.
     ///
     /// # Errors
-    /// [`DiagnosisError::Interrupted`] where the caller asks to stop.
+    /// [`DiagnosisError::Interrupted`] if the caller asks to stop.
     pub(crate) fn after<T>(&mut self, name: &'static str, result: T) -> Result<T, DiagnosisError> {
         self.note(name);
         if (self.goes_on)(name) { Ok(result) } else { Err(DiagnosisError::Interrupted { stage: name }) }
     }
 
-    /// Notes the last stage, and gives all of them.
+    /// Records the last stage, and returns all of them.
     pub(crate) fn last(mut self, name: &'static str) -> Vec<Stage> {
         self.note(name);
         self.stages

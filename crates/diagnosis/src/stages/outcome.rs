@@ -1,4 +1,4 @@
-//! The answer: verdict, classes, shares, maps, the repaired simulator and the next experiment.
+//! Assembly of the answer: verdict, classes, shares, maps, the repaired simulator and the next experiment.
 
 use super::{Judged, Measured, Refined, Remaining, Request};
 use crate::answer::{Budget, Cell, Diagnosis, MeasuringChain, Series, SetScore, Where};
@@ -20,7 +20,7 @@ use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::model::tangent::Path;
 
-/// Everything that the stages before have found.
+/// Results of all stages before.
 #[derive(Clone, Copy)]
 struct All<'a> {
     request: Request<'a>,
@@ -30,7 +30,7 @@ struct All<'a> {
     remaining: &'a Remaining,
 }
 
-/// The answer from what the stages before have found.
+/// Assembles the answer from the results of the stages before.
 pub(crate) fn answer<'a>(
     request: Request<'a>,
     measured: &'a Measured,
@@ -99,7 +99,7 @@ impl All<'_> {
         self.remaining.complete(self.judged)
     }
 
-    /// An experiment that would tell the set from the one that comes closest to it.
+    /// Returns an experiment that would distinguish the set from its closest rival.
     fn next_experiment(&self, closest: Option<&Fit>) -> Option<crate::answer::Experiment> {
         let coarse = &self.refined.coarse.data;
         let finer = self.refined.data.samples() as f64 / coarse.samples().max(1) as f64;
@@ -108,8 +108,8 @@ impl All<'_> {
         next_experiment::next(coarse, self.judged.held.repaired, rival, noise)
     }
 
-    /// Where the gap lies: by kind of law, and over time, amplitude, phase and frequency. `squares` is what each effect of
-    /// the set takes away.
+    /// Returns the place of the gap: by class of cause, and over time, amplitude, phase and frequency.
+    /// `squares` is the decrease of the sum of squares by each effect of the set.
     fn place(&self, squares: &[f64]) -> Result<Where, DiagnosisError> {
         let Self { refined, judged, remaining, .. } = self;
         let (held, complete) = (&judged.held, self.complete());
@@ -154,7 +154,7 @@ impl All<'_> {
         let refined = self.refined;
         let data = refined.data.clone();
         let own = ShootingInterval { by: refined.coarse.by, data, calibrated: self.complete().clone() };
-        // Parts that were left out of long records have nothing to go on through.
+        // If parts of long records were left out, the motion cannot be continued through them.
         let followed = if self.measured.is_whole { &refined.segments } else { &refined.data };
         repaired_simulator(own, followed, self.request.simulator, is_rounded, refined.hold)
     }

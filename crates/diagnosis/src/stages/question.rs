@@ -1,4 +1,4 @@
-//! What could be missing, and the samples on which it is searched.
+//! Candidate effects, and the samples on which sets of them are searched.
 
 use super::{Measured, Request};
 use crate::data::segments::Data;
@@ -13,22 +13,24 @@ use crate::noise::floor;
 use crate::search::null;
 use dynamics::{Hold, Input};
 
-/// The calibrated simulator and the effects that it may lack.
+/// Recalibrated simulator, and the effects that it may lack.
 pub(crate) struct Question {
     pub(crate) data: Data,
     pub(crate) base: Baseline,
     pub(crate) candidates: Vec<Candidate>,
-    /// How many samples of the input one knot of it stands for on the coarse samples.
+    /// Number of input samples per knot of the input, on the coarse samples.
     knots: usize,
-    /// Fewer samples and fewer knots of the input, and the calibrated simulator on them.
+    /// Data with fewer samples and fewer knots of the input. `coarse_base` is the recalibrated simulator on
+    /// them.
     pub(crate) coarse: Data,
     pub(crate) coarse_base: Fit,
-    /// Increase of a score that a further effect has to bring on the coarse samples.
+    /// Increase of the score that an additional effect has to bring on the coarse samples.
     pub(crate) enough: f64,
 }
 
 impl Question {
-    /// `hold` is what the input does between its samples, where that is known already.
+    /// Creates the question. `hold` is the behavior of the input between its samples, if it is known already;
+    /// otherwise the better one is chosen.
     pub(crate) fn of(
         request: &Request<'_>,
         measured: &Measured,
@@ -50,7 +52,7 @@ impl Question {
         Self::on(request, data, base, candidates, knots)
     }
 
-    /// The question on coarse samples with one knot of the input for so many.
+    /// Creates the question on coarse samples, with one knot of the input per `knots` samples.
     fn on(
         request: &Request<'_>,
         data: Data,
@@ -64,14 +66,15 @@ impl Question {
         let dictionary = Dictionary::at(&coarse, &coarse_base, &candidates)?;
         let settings = request.settings;
         let threshold = null::threshold(&dictionary, settings.false_alarm, &settings.seed);
-        // On fewer samples a gain is so many times smaller; the search must not stop on that account.
+        // On fewer samples a gain is smaller by this factor; the search must not stop for that reason.
         let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
         let enough = 0.5 * threshold / finer;
         Ok(Self { data, base, candidates, knots, coarse, coarse_base, enough })
     }
 
-    /// The same question with as much of the input as a set needs that was found with less of it, on segments joined by so many; none
-    /// where it has enough.
+    /// Returns the same question with more knots of the input, as many as a set needs that was found with
+    /// fewer; `by` is the number of segments joined into one shooting interval. `None` if the present knots
+    /// are enough.
     pub(crate) fn finer(
         &self,
         request: &Request<'_>,
@@ -87,12 +90,12 @@ impl Question {
         finer.map(Some)
     }
 
-    /// What the input does between its samples; none where there is none.
+    /// Returns the behavior of the input between its samples; `None` without an input.
     pub(crate) fn hold(&self) -> Option<Hold> {
         self.data.inputs.iter().flatten().map(Input::hold).next()
     }
 
-    /// What it could do else.
+    /// Returns the other possible behavior of the input between its samples.
     pub(crate) fn other_hold(&self) -> Option<Hold> {
         self.hold().map(|hold| if hold == Hold::Linear { Hold::Zero } else { Hold::Linear })
     }

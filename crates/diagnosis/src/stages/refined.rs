@@ -1,4 +1,4 @@
-//! The best sets on every sample, fitted to convergence.
+//! Best sets on every sample, fitted to convergence.
 
 use super::{Question, Request, Searched};
 use crate::data::segments::Data;
@@ -19,23 +19,23 @@ use crate::search::nameless::nameless;
 use crate::search::refine::refine;
 use dynamics::Hold;
 
-/// Everything fitted, on the segments as they were cut and on the shooting interval that the best sets follow.
+/// Results of all fits, on the unjoined segments and on the shooting interval that the best sets follow.
 pub(crate) struct Refined {
     pub(crate) candidates: Vec<Candidate>,
-    /// The segments as they were cut.
+    /// Unjoined segments.
     pub(crate) segments: Data,
     segments_base: Baseline,
-    /// What the inputs do between their samples, of which these data have only some.
+    /// Behavior of the inputs between their samples, of which these data keep only some.
     pub(crate) hold: Option<Hold>,
-    /// The same joined.
+    /// Segments joined to the shooting interval.
     pub(crate) data: Data,
     pub(crate) base: Baseline,
-    /// The coarse samples, joined too, with the sets that were found on them.
+    /// Shooting interval with the coarse samples, on which the sets were found.
     pub(crate) coarse: ShootingInterval,
     found: Archive,
-    /// Sets on every sample.
+    /// Sets fitted on every sample.
     pub(crate) archive: Archive,
-    /// Autocorrelation time of what the best of them leaves, in samples.
+    /// Autocorrelation time, in samples, of the residual of the closest set.
     pub(crate) time: f64,
 }
 
@@ -71,7 +71,7 @@ impl Refined {
         Ok(Self { candidates, segments, segments_base, hold, data, base, coarse, found, archive, time })
     }
 
-    /// What the later stages share.
+    /// Returns the context shared by the later stages.
     pub(crate) fn context<'a>(&'a self, request: &Request<'a>) -> Context<'a> {
         let (data, calibrated) = (&self.coarse.data, &self.coarse.calibrated);
         Context {
@@ -85,14 +85,14 @@ impl Refined {
         }
     }
 
-    /// The sets by their evidence on what they were fitted to, best first.
+    /// Returns the sets by their evidence on the fitted samples, best first.
     pub(crate) fn weighed(&self) -> Vec<Weighed<'_>> {
         let weighing = Weighing::of(&self.data, &self.base.calibrated, &self.archive, self.candidates.len());
         weighing.weigh(&self.archive)
     }
 }
 
-/// The given and the recalibrated simulator on every sample of a shooting interval.
+/// Fits the nominal and the recalibrated simulator on every sample of a shooting interval.
 fn followed(
     data: &Data,
     segments: &Unjoined<'_>,

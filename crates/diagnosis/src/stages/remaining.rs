@@ -1,4 +1,4 @@
-//! What the named effects leave: a torque without a name, noise, and what is neither.
+//! Left-over beside the named effects: a torque without a name, noise, and everything else.
 
 use super::{Judged, Refined};
 use crate::answer::{Gap, LeftOver};
@@ -14,21 +14,22 @@ use crate::fit::fitted::Fit;
 use crate::model::tangent::Path;
 use crate::noise::floor;
 
-/// Error over the white noise floor beyond which what is left is no noise. An autoregressive noise of first
-/// order stays below it up to a correlation of 0.84 from sample to sample.
+/// Error, relative to the white noise floor, above which a residual cannot be noise. First-order
+/// autoregressive noise stays below it up to a correlation of 0.84 from sample to sample.
 const FAR_ABOVE: f64 = 3.0;
 
-/// What is left, and how large the gap is before and after.
+/// Left-over, and the size of the gap before and after the repair.
 pub(crate) struct Remaining {
     pub(crate) unnamed: Option<Unnamed>,
     /// Standard deviation of the noise.
     pub(crate) noise: f64,
-    /// The motion along the segments.
+    /// Motion along the unjoined segments.
     pub(crate) paths: Vec<Path>,
     pub(crate) gap: Gap,
-    /// Mean square that recalibration leaves beside the noise.
+    /// Mean square that recalibration leaves beyond the noise.
     pub(crate) excess: f64,
-    /// Probability that all that is missing has no name, and that anything is left beside the named effects.
+    /// Probability that everything missing has no name. `left_over` is the probability that anything is left
+    /// beside the named effects.
     pub(crate) nameless: f64,
     pub(crate) left_over: f64,
 }
@@ -70,7 +71,7 @@ impl Remaining {
         }
         let with_names = held.after.mean_square();
         if with_names > (FAR_ABOVE * noise.value).powi(2) {
-            // No noise is so smooth: whatever its spectrum is, it is a part of the gap.
+            // No noise is that smooth: whatever its spectrum, the residual is a part of the gap.
             share = share.max((with_names - noise_square) / excess.max(f64::MIN_POSITIVE));
             evidence = f64::INFINITY;
         }
@@ -79,22 +80,22 @@ impl Remaining {
         Ok(Self { unnamed, noise: noise.value, paths, gap, excess, nameless, left_over })
     }
 
-    /// Residuals on held-out parts, with the torque without a name where there is one.
+    /// Returns the held-out residuals, with the torque without a name if there is one.
     pub(crate) fn after<'b>(&'b self, judged: &'b Judged<'_>) -> &'b HeldOut {
         self.unnamed.as_ref().map_or(&judged.held.after, |torque| &torque.after)
     }
 
-    /// The fit with everything that was found, on the shooting interval.
+    /// Returns the fit with everything found, on the shooting interval.
     pub(crate) fn complete<'b>(&'b self, judged: &'b Judged<'_>) -> &'b Fit {
         self.unnamed.as_ref().map_or(judged.held.repaired, |torque| &torque.followed)
     }
 
-    /// The same on the segments as they were cut.
+    /// Returns the same on the unjoined segments.
     pub(crate) fn fitted<'b>(&'b self, judged: &'b Judged<'_>) -> &'b Fit {
         self.unnamed.as_ref().map_or(&judged.held.fitted, |torque| &torque.fitted)
     }
 
-    /// What is left beside the noise, in words of the gap.
+    /// Returns the left-over beyond the noise, relative to the gap and to the noise.
     pub(crate) fn summary(&self) -> LeftOver {
         LeftOver { share_of_gap: 1.0 - self.gap.closure.value, over_noise: self.gap.ratio_to_floor.value }
     }
@@ -104,7 +105,7 @@ impl Remaining {
 mod tests {
     use super::FAR_ABOVE;
 
-    /// Second differences of an autoregressive noise of unit variance have the variance 6 − 8ρ + 2ρ².
+    /// Second differences of autoregressive noise of unit variance have the variance 6 − 8ρ + 2ρ².
     #[test]
     fn colored_noise_stays_below_what_is_no_noise() {
         let over_floor = |rho: f64| (6.0 / (6.0 - 8.0 * rho + 2.0 * rho * rho)).sqrt();

@@ -1,4 +1,4 @@
-//! Sets of effects that come into question, on the longest shooting interval that they follow.
+//! Search for sets of effects, on the longest shooting interval that they follow.
 
 use super::{Question, Request};
 use crate::data::segments::Data;
@@ -20,31 +20,33 @@ use crate::search::proposals::proposal;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Most effects that a set can hold.
+/// Largest number of effects in a set.
 const MOST_EFFECTS: usize = 5;
 
-/// Searches on longer shooting intervals at most.
+/// Largest number of searches on longer shooting intervals.
 const MOST_INTERVALS: usize = 3;
 
-/// Sets of one effect that are asked under another belief, beside the best set.
+/// Number of sets of one effect that are compared under the other behavior of the input, beside the best set.
 const SINGLES: usize = 3;
 
-/// A set that a search goes on from, on segments joined by so many.
+/// Set from which a search starts, on segments joined by `by`.
 pub(crate) struct Known {
     pub(crate) by: usize,
     pub(crate) set: Fit,
 }
 
-/// What a search has found.
+/// Result of a search.
 pub(crate) struct Searched {
-    /// The coarse samples, joined as far as the best sets follow, and the calibrated simulator on them.
+    /// Shooting interval that the best sets follow, with the coarse samples and the recalibrated simulator on
+    /// them.
     pub(crate) interval: ShootingInterval,
     pub(crate) found: Archive,
     pub(crate) breadth: Breadth,
 }
 
 impl Searched {
-    /// `is_whole` tells whether no segment was left out. Where a set is `known` the search goes on from it.
+    /// Searches sets of effects. `is_whole` is `true` if no segment was left out. The search starts from the
+    /// `known` set, if there is one.
     pub(crate) fn of(
         request: &Request<'_>,
         question: &Question,
@@ -75,14 +77,15 @@ impl Searched {
         Self { interval, found, breadth }
     }
 
-    /// The best set.
+    /// Returns the best set.
     pub(crate) fn best(&self) -> Option<&Fit> {
         self.found.ranked(self.found.autocorrelation_time()).into_iter().next()
     }
 
-    /// The set with the most evidence on every sample of another question, which differs from `own` by a belief, where it has more
-    /// than any has on those of `own`: asked are the best set, what is left of it without each member, for which the belief may have
-    /// to answer, and the best [`SINGLES`] of one effect.
+    /// Returns the set with the highest evidence on every sample of another question, which differs from
+    /// `own` in the behavior of the input, if that evidence exceeds that of all sets on the samples of `own`.
+    /// Three kinds of sets are compared: the best set, the best set without each of its members, which may
+    /// only compensate for the wrong behavior, and the best [`SINGLES`] sets of one effect.
     pub(crate) fn better_on(&self, own: &Question, other: &Question) -> Option<Known> {
         let time = self.found.autocorrelation_time();
         let ranked = self.found.ranked(time);
@@ -111,7 +114,7 @@ impl Searched {
         (evidence(&fits.1) > most).then(|| Known { by: self.interval.by, set: set.clone() })
     }
 
-    /// A set without one of its members, as it is known or fitted from there.
+    /// Returns a set without one of its members: the known fit, or one that starts from the set.
     fn without(&self, set: &Fit, member: Candidate) -> Option<Fit> {
         let data = &self.interval.data;
         let less = proposal(data, set, &[member], &[]);
@@ -119,27 +122,30 @@ impl Searched {
         known.or_else(|| fit(data, &less.hypothesis, less.point, Moving::All, Stopping::SEARCH).ok())
     }
 
-    /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
+    /// Returns the largest log evidence of any set, minus the price of its effects, from a vocabulary of the
+    /// given size.
     fn evidence(&self, time: f64, vocabulary: usize) -> f64 {
         let data = &self.interval.data;
         let of = |fit: &Fit| score(fit, time) - price(data, fit, vocabulary, 1.0);
         self.found.fits.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether this search, on other clocks of the same records, has come closer than another by so much log evidence.
+    /// Returns `true` if this search, on other clocks of the same records, has come closer than another one:
+    /// the sets follow a longer shooting interval or, on an equal one, have more log evidence by more than
+    /// `price` nats.
     pub(crate) fn is_closer(&self, other: &Self, vocabulary: usize, price: f64) -> bool {
         let time = self.found.autocorrelation_time().min(other.found.autocorrelation_time());
         match self.interval.by.cmp(&other.interval.by) {
             Ordering::Equal => self.evidence(time, vocabulary) - price > other.evidence(time, vocabulary),
-            // Only a model that is right follows the motion further.
+            // Only a correct model follows the motion further.
             longer => longer == Ordering::Greater,
         }
     }
 }
 
 impl Known {
-    /// The interval that the set was found on, cut out of other segments, and the set on it where it is not the calibrated
-    /// simulator; none where these are not as many.
+    /// Returns the shooting interval that the set was found on, built from other segments, and the set fitted
+    /// on it, unless it is the recalibrated simulator. `None` if the number of segments differs.
     fn on(self, segments: &Data, calibrated: &Fit) -> Option<(ShootingInterval, Vec<Fit>)> {
         let interval = ShootingInterval::joined(segments, calibrated, self.by)?;
         if self.set.point.starts.len() != interval.data.segments.len() {
@@ -152,7 +158,8 @@ impl Known {
     }
 }
 
-/// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.
+/// Continues the search from sets that it has not expanded ([`chains`]), if the best set leaves more than
+/// noise.
 fn further(asked: &Asked<'_>, explored: &mut Explored) {
     let found = &mut explored.archive;
     let leaves_more = |best: &Fit| {
@@ -166,8 +173,9 @@ fn further(asked: &Asked<'_>, explored: &mut Explored) {
     go_on(asked, explored);
 }
 
-/// Searches, where the segments as they were cut are asked about, on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to
-/// longer ones for as long as what was found follows the motion there.
+/// Searches on the longest shooting interval on which the recalibrated simulator is a valid start, and
+/// continues on longer ones as long as the sets found follow the motion there. If segments were left out,
+/// only the unjoined segments are used.
 fn explore(asked: &Asked<'_>, is_whole: bool, known: Option<Known>) -> (ShootingInterval, Explored) {
     let &Asked { data: segments, calibrated, .. } = asked;
     let from = |horizon: &ShootingInterval, known: Vec<Fit>| {
@@ -176,7 +184,7 @@ fn explore(asked: &Asked<'_>, is_whole: bool, known: Option<Known>) -> (Shooting
     };
     let begin = |horizon: &ShootingInterval| from(horizon, Vec::new());
     let shortest = ShootingInterval::shortest(segments, calibrated);
-    // Parts that were left out of long records have nothing to go on through.
+    // If parts of long records were left out, the motion cannot be continued through them.
     if !is_whole {
         let pool = begin(&shortest);
         return (shortest, pool);

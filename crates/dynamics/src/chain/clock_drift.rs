@@ -1,4 +1,4 @@
-//! A clock that runs at a wrong or changing rate.
+//! Clock that runs at a wrong or changing rate.
 
 use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
@@ -7,7 +7,7 @@ use crate::law::Values;
 use crate::units::Observed;
 use crate::units::Quantity;
 
-/// Largest rate of a clock, at the start as at the end.
+/// Largest relative excess of a clock's rate, at the start and at the end.
 const FASTEST: f64 = 1.0;
 
 const DESCRIPTION: Description = Description {
@@ -43,7 +43,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A recorder's clock: at true time t, counted from the first sample, it shows t + r·t + ½·r′·t².
+/// Clock of a recorder: at true time t, counted from the first sample, it shows t + r·t + ½·r′·t².
 #[derive(Debug, Clone, Copy)]
 pub struct ClockDrift;
 

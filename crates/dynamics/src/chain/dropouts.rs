@@ -1,4 +1,4 @@
-//! Lost samples.
+//! Loss of samples.
 
 use super::step::{Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};

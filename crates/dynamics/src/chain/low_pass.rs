@@ -1,19 +1,19 @@
-//! A first-order low-pass over a motion that is known at samples with its derivatives.
+//! First-order low-pass filter over a motion that is known at samples with its derivatives.
 //!
-//! On an interval of length h the input is the polynomial Σ cₖuᵏ of u ∈ [0, 1] that meets values and derivatives
-//! at both ends. With a = h/T the output at its end is y(0)·e^(−a) + Σ cₖMₖ, where
-//! Mₖ = ∫₀¹ a·e^(−a(1−u))·uᵏ du.
+//! On an interval of length h the input is the polynomial Σ cₖuᵏ of u ∈ [0, 1] that matches values and
+//! derivatives at both ends. With a = h/T the output at its end is y(0)·e^(−a) + Σ cₖMₖ, where Mₖ = ∫₀¹
+//! a·e^(−a(1−u))·uᵏ du.
 
 use super::step::Sampled;
 
-/// Below this a the moments are summed as a series of positive terms, above it by their recurrence, which
-/// multiplies errors by k/a in each of five steps.
+/// Value of a up to which the moments are summed as a series of positive terms. Above it they are computed by
+/// their recurrence, which multiplies errors by k/a in each of five steps.
 const SERIES_UP_TO: f64 = 6.0;
 
-/// Most terms of the series: 6⁴⁸/48! is 2e-24.
+/// Maximum number of terms of the series: 6⁴⁸/48! is 2e-24.
 const SERIES_TERMS: usize = 48;
 
-/// Mₖ for k = 0..N.
+/// Computes Mₖ for k = 0..N.
 fn moments<S: Sampled, const N: usize>(a: S) -> [S; N] {
     let zero = S::from(0.0);
     let decay = (-a).exp();
@@ -41,8 +41,8 @@ fn moments<S: Sampled, const N: usize>(a: S) -> [S; N] {
     moments
 }
 
-/// Runs the low-pass over the intervals; `polynomial` gives the coefficients of an interval from its two ends
-/// and its length.
+/// Runs the low-pass filter over the intervals. `polynomial` returns the coefficients of an interval from its
+/// two ends and its length.
 fn run<S: Sampled, const ENDS: usize, const N: usize>(
     time_constant: S,
     times_s: &[f64],
@@ -67,7 +67,8 @@ fn run<S: Sampled, const ENDS: usize, const N: usize>(
     output
 }
 
-/// The low-passed signal at each time from its value, first and second derivative there. Starts at `first`.
+/// Returns the filtered signal at each time, given its value, first and second derivative there. Starts at
+/// `first`.
 pub(super) fn quintic<S: Sampled>(
     time_constant: S,
     times_s: &[f64],
@@ -88,7 +89,7 @@ pub(super) fn quintic<S: Sampled>(
     })
 }
 
-/// As [`quintic`], from value and first derivative.
+/// Does the same as [`quintic`], given value and first derivative.
 pub(super) fn cubic<S: Sampled>(
     time_constant: S,
     times_s: &[f64],
@@ -106,7 +107,7 @@ pub(super) fn cubic<S: Sampled>(
 mod tests {
     use super::moments;
 
-    /// Against composite Simpson's rule, on both sides of where the way of computing changes.
+    /// Against composite Simpson's rule, on both sides of the value at which the method changes.
     #[test]
     fn moments_are_the_integrals() {
         for a in [1e-6, 0.01, 0.7, 5.999, 6.001, 40.0, 900.0] {

@@ -1,4 +1,5 @@
-//! The measuring chain: sensor, noise and the effects between a motion and a file, in the order of the hardware.
+//! Measurement chain: sensor, noise and the effects between a motion and a file, in the order of the
+//! hardware.
 
 use super::sensor_quantization;
 use super::step::{Extent, Sampled, SampledMotion, Samples};
@@ -32,12 +33,13 @@ struct Raw {
 }
 
 impl Chain {
-    /// A chain from what the sensor observes, the standard deviation of its white noise in the observed
-    /// quantity's unit, and effects of the measuring chain, which are put in the order of the hardware.
+    /// Creates a chain from the observed quantity, the standard deviation of the sensor's white noise in that
+    /// quantity's unit, and effects of the measurement chain, which are sorted in the order of the hardware.
     ///
     /// # Errors
-    /// [`DynamicsError::BadNoise`] for a noise that is negative or not finite, [`DynamicsError::Duplicate`]
-    /// where an effect is given twice, [`DynamicsError::NotInTheChain`] for an effect in the system.
+    /// Returns [`DynamicsError::BadNoise`] for a noise that is negative or not finite,
+    /// [`DynamicsError::Duplicate`] if an effect is given twice, and [`DynamicsError::NotInTheChain`] for an
+    /// effect in the system.
     pub fn new(observed: Observed, noise: f64, effects: Vec<Active>) -> Result<Self, DynamicsError> {
         if !noise.is_finite() || noise < 0.0 {
             return Err(DynamicsError::BadNoise { value: noise });
@@ -56,32 +58,34 @@ impl Chain {
         Ok(Self { observed, noise, steps })
     }
 
-    /// Quantity that the sensor observes.
+    /// Returns the quantity that the sensor observes.
     #[must_use]
     pub fn observed(&self) -> Observed {
         self.observed
     }
 
-    /// Standard deviation of the sensor's white noise, in the observed quantity's SI unit, 0 or more.
+    /// Returns the standard deviation of the sensor's white noise, in the observed quantity's SI unit, 0 or
+    /// above.
     #[must_use]
     pub fn noise(&self) -> f64 {
         self.noise
     }
 
-    /// Its effects, in the order in which they act.
+    /// Returns the effects, in the order in which they act.
     pub fn effects(&self) -> impl Iterator<Item = &Active> {
         self.steps.iter().map(|(_, active)| active)
     }
 
-    /// Sends a motion through the chain. `generator` gives each step that draws, by its id (`sensor_noise` for
-    /// the white noise), a generator of its own, so that a further step changes no other's draws.
+    /// Sends a motion through the chain. `generator` returns, for the id of each random step (`sensor_noise`
+    /// for the white noise), a generator of its own, so that an additional step does not change the draws of
+    /// the others.
     ///
     /// A sensor with a step reports wrong readings (`outliers`) on its lattice too.
     ///
     /// # Errors
-    /// [`DynamicsError::UnequalLengths`] for lists of different lengths or fewer than two samples,
-    /// [`DynamicsError::BadTimes`] for times that do not increase, [`DynamicsError::Contradiction`] or
-    /// [`DynamicsError::NotForThisSensor`] for an effect that this motion and sampling make impossible.
+    /// Returns [`DynamicsError::UnequalLengths`] for lists of different lengths or fewer than two samples,
+    /// [`DynamicsError::BadTimes`] for times that do not increase, and [`DynamicsError::Contradiction`] or
+    /// [`DynamicsError::NotForThisSensor`] for an effect that is impossible with this motion and sampling.
     pub fn observe<R: Rng>(
         &self,
         motion: &SampledMotion<'_, f64>,
@@ -124,16 +128,16 @@ impl Chain {
     }
 }
 
-/// Returns whether a step acts on the signal itself, before the sensor's noise is added.
+/// Returns `true` if a step acts on the signal itself, before the sensor's noise is added.
 fn precedes_noise(effect: ChainEffect) -> bool {
     matches!(effect, ChainEffect::SensorLag | ChainEffect::SensorNonlinearity | ChainEffect::SensorDrift)
 }
 
-/// The differentiable steps of a chain on numbers of any kind, in the order of the hardware: what a fit
-/// compares with a record, and its exact derivatives.
+/// Applies the differentiable steps of a chain over any scalar, in the order of the hardware. The result is
+/// what a fit compares with a record, with its exact derivatives.
 ///
-/// Steps that are not differentiable are skipped: noise, rounding, what is wrong or lost, and scattered stamps
-/// are what a fit's likelihood speaks of, not its prediction.
+/// Steps that are not differentiable are skipped: noise, rounding, wrong or lost samples and scattered stamps
+/// belong to the fit's likelihood, not to its prediction.
 #[must_use]
 pub fn transform<S: Sampled>(
     steps: &[(ChainEffect, Values<S>)],
@@ -150,7 +154,7 @@ pub fn transform<S: Sampled>(
 }
 
 impl<S: Sampled> Samples<S> {
-    /// What an ideal sensor with an ideal clock makes of a motion.
+    /// Returns the samples of an ideal sensor with an ideal clock.
     pub(super) fn new(motion: &SampledMotion<'_, S>, observed: Observed) -> Self {
         Self {
             indices: (0..motion.times_s.len()).collect(),
@@ -160,7 +164,7 @@ impl<S: Sampled> Samples<S> {
         }
     }
 
-    /// Drops the samples that are not to be kept.
+    /// Drops the samples that are not kept.
     pub(super) fn retain(&mut self, kept: &[bool]) {
         fn filter<T: Copy>(list: &mut Vec<T>, kept: &[bool]) {
             *list = list.iter().zip(kept).filter(|(_, keep)| **keep).map(|(item, _)| *item).collect();
@@ -192,7 +196,7 @@ impl Extent {
         if let Some((index, (_, &value))) = pairs.enumerate().find(|(_, (before, after))| before >= after) {
             return Err(DynamicsError::BadTimes { index: index + 1, value });
         }
-        // There are two at least: checked above.
+        // There are at least two times, as checked above.
         let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
         let duration_s = last - first;
         let values = motion.observed(observed);

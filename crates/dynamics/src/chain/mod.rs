@@ -1,21 +1,21 @@
-//! The measuring chain: from the motion to what a file says of it.
+//! Measurement chain: from the motion to the samples of a file.
 //!
 //! One effect, one file. The order is that of the hardware, whatever order the effects are given in:
 //!
 //! 1. the sensor samples the motion at true times, and observes position, velocity or acceleration;
-//! 2. it lags (`sensor_lag`), is eccentric (`sensor_nonlinearity`), its zero wanders (`sensor_drift`);
+//! 2. it lags (`sensor_lag`), is eccentric (`sensor_nonlinearity`), and its zero drifts (`sensor_drift`);
 //! 3. white noise is added;
-//! 4. its range ends (`sensor_saturation`), its reading has a step (`sensor_quantization`);
-//! 5. readings go wrong (`outliers`) or get lost (`dropouts`) on their way;
-//! 6. what arrives is stamped: by a clock of its own rate (`clock_drift`), at scattered moments
+//! 4. its range is limited (`sensor_saturation`), its reading has a step (`sensor_quantization`);
+//! 5. readings go wrong (`outliers`) or get lost (`dropouts`) in transport;
+//! 6. the remaining samples are stamped: by a clock of its own rate (`clock_drift`), at scattered moments
 //!    (`timestamp_jitter`), burst by burst (`timestamp_batching`).
 //!
-//! Steps that are differentiable in their parameters are written over any [`Sampled`] number, so that a fit gets
-//! exact derivatives from the same lines ([`transform`]). The others work on doubles and draw from a
+//! Steps that are differentiable in their parameters are written over any [`Sampled`] number, so that a fit
+//! gets exact derivatives from the same code ([`transform`]). The others work on doubles and draw from a
 //! generator of their own.
 //!
 //! # Example
-//! A shaft that turns at 0.1 rad/s, seen by an encoder with steps of a thousandth of a radian:
+//! A shaft that turns at 0.1 rad/s, observed by an encoder with steps of a thousandth of a radian:
 //!
 //! ```
 //! use dynamics::chain::{Chain, Observed, SampledMotion};

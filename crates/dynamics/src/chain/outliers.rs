@@ -40,8 +40,8 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Each sample is wrong with a probability, independent of the others, by a normal error. A sensor with a step
-/// reports wrong readings on its lattice too: see [`crate::chain::Chain::observe`].
+/// Samples that are wrong by a normal error, each with a probability and independent of the others. A sensor
+/// with a step reports wrong readings on its lattice too: see [`crate::chain::Chain::observe`].
 #[derive(Debug, Clone, Copy)]
 pub struct Outliers;
 
@@ -54,7 +54,7 @@ impl Step for Outliers {
         generator: &mut R,
     ) {
         for value in &mut samples.values {
-            // Two draws for each sample, so that which are wrong does not depend on the probability's history.
+            // Two draws for each sample, so that earlier wrong samples do not change later draws.
             let (chance, error): (f64, f64) = (generator.random(), generator.sample(StandardNormal));
             if chance < probability {
                 *value += size * error;

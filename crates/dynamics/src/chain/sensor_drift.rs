@@ -1,4 +1,4 @@
-//! A wandering zero.
+//! Drifting zero of a sensor.
 
 use super::step::{Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A linear baseline: x + d·(t − t₀), t₀ being the first sample's time.
+/// Linear baseline: x + d·(t − t₀), where t₀ is the first sample's time.
 #[derive(Debug, Clone, Copy)]
 pub struct SensorDrift;
 

@@ -1,4 +1,4 @@
-//! A sensor that follows with a lag.
+//! Sensor that follows with a lag.
 
 use super::low_pass;
 use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
@@ -31,12 +31,12 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A first-order low-pass: T·ẏ + y = x, settled on the first sample's value.
+/// First-order low-pass filter: T·ẏ + y = x, settled at the first sample's value.
 ///
-/// Exact for the polynomial through the motion's values and derivatives at both ends of each interval: a
-/// quintic for a position, which for angular frequency ω and sample period Δ is off by (ωΔ)⁶/46080 of the
-/// amplitude at most; a cubic, (ωΔ)⁴/384, for a velocity. A lagged acceleration is the derivative of the
-/// lagged velocity: the lag commutes with d/dt.
+/// It is exact for the polynomial through the motion's values and derivatives at both ends of each interval.
+/// For a position this is a quintic, whose error at angular frequency ω and sample period Δ is at most
+/// (ωΔ)⁶/46080 of the amplitude; for a velocity it is a cubic, with (ωΔ)⁴/384. A lagged acceleration is the
+/// derivative of the lagged velocity: the lag commutes with d/dt.
 #[derive(Debug, Clone, Copy)]
 pub struct SensorLag;
 
@@ -109,8 +109,8 @@ mod tests {
 
     const OMEGA: f64 = 21.75;
 
-    /// The lagged observation of cos ωt sampled unevenly over 4 s, and its exact value: the settled response
-    /// plus what is left of the start.
+    /// The lagged observation of cos ωt, sampled unevenly over 4 s, and its exact value: the settled response
+    /// plus the decaying rest of the start.
     fn lagged<S: Sampled>(time_constant: S, observed: Observed) -> (Vec<S>, Vec<f64>) {
         let times: Vec<f64> = (0..1040).map(|i| i as f64 / 260.0 + 1e-3 * (i as f64).sin()).collect();
         let series = |f: &dyn Fn(f64) -> f64| -> Vec<S> { times.iter().map(|&t| S::from(f(t))).collect() };

@@ -1,4 +1,4 @@
-//! An eccentric encoder.
+//! Eccentric encoder.
 
 use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
@@ -41,7 +41,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// An eccentrically mounted encoder disk or magnet: x + a·sin(x + φ).
+/// Eccentrically mounted encoder disk or magnet: x + a·sin(x + φ).
 #[derive(Debug, Clone, Copy)]
 pub struct SensorNonlinearity;
 

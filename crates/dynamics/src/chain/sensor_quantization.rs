@@ -1,4 +1,4 @@
-//! A sensor with a step.
+//! Sensor with a step.
 
 use super::step::{Extent, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
@@ -42,9 +42,9 @@ const DESCRIPTION: Description = Description {
 
 /// Readings rounded to whole multiples of a step.
 ///
-/// With a hysteresis h a reading follows only once the motion has left it behind by h, as of a magnetic encoder that
-/// keeps its last step from flickering, or of one that counts lines at another place in each direction: half a step there.
-/// The first reading lies where the motion is.
+/// With a hysteresis h, a reading follows only once the motion is ahead of it by h. Magnetic encoders do so
+/// to keep their last step from flickering; an encoder that counts lines at different places in the two
+/// directions has a hysteresis of half a step. The first reading is at the position of the motion.
 #[derive(Debug, Clone, Copy)]
 pub struct SensorQuantization;
 
@@ -87,7 +87,7 @@ impl Step for SensorQuantization {
     }
 }
 
-/// Puts values on the lattice of a step.
+/// Rounds values to the lattice of a step.
 pub(super) fn round(step: f64, values: &mut [f64]) {
     for value in values {
         *value = step * (*value / step).round();
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(read(&way, 1e-9, 0.5), [0.0, 0.0, 0.5, 1.5, 1.5, 1.5, 0.9, 0.9]);
     }
 
-    /// Steps of 1, half a step of hysteresis: the line last passed, whichever way.
+    /// Steps of 1, half a step of hysteresis: the line passed last, in either direction.
     #[test]
     fn with_half_a_step_it_is_the_last_line_passed() {
         let up: Vec<f64> = (0..=50).map(|i| 0.1 * f64::from(i) + 0.05).collect();
@@ -124,7 +124,7 @@ mod tests {
         let way: Vec<f64> = up.iter().chain(&down).copied().collect();
         let found = read(&way, 1.0, 0.5);
         for (at, (value, reading)) in way.iter().zip(&found).enumerate().skip(10) {
-            // Past the turn the last line stays the same for a while.
+            // After the reversal the last line stays the same for a while.
             let last = if at <= 50 { value.floor() } else { value.ceil().min(5.0) };
             assert_eq!(*reading, last, "{at}: {value}");
         }

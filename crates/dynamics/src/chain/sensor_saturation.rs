@@ -1,4 +1,4 @@
-//! A sensor whose range ends.
+//! Sensor with a limited range.
 
 use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
@@ -40,7 +40,7 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Readings clipped to c ± b. Where it clips, the reading depends on the range alone.
+/// Readings clipped to c ± b. A clipped reading depends on the range alone.
 #[derive(Debug, Clone, Copy)]
 pub struct SensorSaturation;
 
@@ -65,7 +65,7 @@ impl Step for SensorSaturation {
     }
 
     fn check(&[bound, center, ..]: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
-        // Where every value lies beyond the same end, the reading never changes.
+        // If every value lies beyond the same end, the reading never changes.
         let nearest = (extent.smallest - center).max(center - extent.largest);
         if bound > nearest {
             return Ok(());

@@ -1,4 +1,4 @@
-//! What a step of the measuring chain is.
+//! Interface of a step of the measurement chain.
 
 use crate::description::Description;
 use crate::error::DynamicsError;
@@ -7,9 +7,9 @@ use crate::scalar::{Dual, Scalar};
 use crate::units::{Coordinate, Observed};
 use rand::Rng;
 
-/// A number whose plain value decides between two pieces of a step, such as clipped or not.
+/// Number whose plain value selects between two pieces of a step, such as clipped or not.
 pub trait Sampled: Scalar {
-    /// The plain value, derivatives left aside.
+    /// Returns the plain value without derivatives.
     fn plain(self) -> f64;
 }
 
@@ -25,10 +25,10 @@ impl<const N: usize> Sampled for Dual<N> {
     }
 }
 
-/// A motion at the times at which a sensor samples it; all four of one length.
+/// Motion at the times at which a sensor samples it; all four lists have the same length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SampledMotion<'a, S> {
-    /// The sensor's true sampling times in seconds, increasing.
+    /// True sampling times of the sensor in seconds, increasing.
     pub times_s: &'a [f64],
     /// Positions in rad or m.
     pub position: &'a [S],
@@ -39,7 +39,7 @@ pub struct SampledMotion<'a, S> {
 }
 
 impl<'a, S> SampledMotion<'a, S> {
-    /// What the sensor observes of it.
+    /// Returns the observed quantity.
     pub(crate) fn observed(&self, observed: Observed) -> &'a [S] {
         match observed {
             Observed::Position => self.position,
@@ -49,25 +49,25 @@ impl<'a, S> SampledMotion<'a, S> {
     }
 }
 
-/// Samples on their way through the measuring chain; the lists are of one length.
+/// Samples on their way through the measurement chain; all lists have the same length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples<S> {
-    /// Position of each sample in the sampling, from 0: those that got lost are missing.
+    /// Position of each sample in the sampling, from 0; lost samples are missing.
     pub indices: Vec<usize>,
-    /// When the sensor took it, in seconds. Nobody outside sees these.
+    /// True sampling times in seconds. They are not part of the file.
     pub times_s: Vec<f64>,
-    /// Values of the file, in the observed quantity's unit.
+    /// Values in the file, in the observed quantity's unit.
     pub values: Vec<S>,
-    /// When the file says it was, in seconds.
+    /// Time stamps in the file, in seconds.
     pub stamps_s: Vec<S>,
 }
 
-/// Sampling and values before the chain touches them, by which an impossible parameter is recognized.
+/// Sampling and values before the chain acts, against which parameters are checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// Time from the first sample to the last, in seconds.
     pub duration_s: f64,
-    /// The mean time between samples, in seconds.
+    /// Mean time between samples, in seconds.
     pub sample_period_s: f64,
     /// Smallest observed value.
     pub smallest: f64,
@@ -79,19 +79,19 @@ pub struct Extent {
     pub coordinate: Coordinate,
 }
 
-/// An effect in the measuring chain.
+/// Effect in the measurement chain.
 pub trait Step {
-    /// Returns the description: id, equation, parameters, signature and reference.
+    /// Description: id, equation, parameters, signature and reference.
     const DESCRIPTION: &'static Description;
 
-    /// True if values and stamps are differentiable in its parameters: [`Step::transform`] then is the whole
-    /// step.
+    /// `true` if values and stamps are differentiable in the effect's parameters: [`Step::transform`] is then
+    /// the whole step.
     const DIFFERENTIABLE: bool = false;
 
-    /// A differentiable step, on numbers of any kind; nothing in a step that is not.
+    /// Applies a differentiable step, over any scalar; does nothing in a step that is not differentiable.
     ///
-    /// The samples are all there still: every differentiable step but the one on the stamps comes before
-    /// the first that loses any.
+    /// All samples are still present: every differentiable step except the one on the stamps comes before the
+    /// first that loses samples.
     fn transform<S: Sampled>(
         _values: &Values<S>,
         _motion: &SampledMotion<'_, S>,
@@ -100,13 +100,13 @@ pub trait Step {
     ) {
     }
 
-    /// The step on doubles where it is not differentiable; `generator` is the step's own.
+    /// Applies a step that is not differentiable, on doubles; `generator` is the step's own.
     fn distort<R: Rng + ?Sized>(_values: &Values<f64>, _samples: &mut Samples<f64>, _generator: &mut R) {}
 
-    /// Refuses parameters that make no sense for this sampling and this motion.
+    /// Rejects parameters that are impossible with this sampling and this motion.
     ///
     /// # Errors
-    /// [`DynamicsError::Contradiction`] or [`DynamicsError::NotForThisSensor`].
+    /// Returns [`DynamicsError::Contradiction`] or [`DynamicsError::NotForThisSensor`].
     fn check(_values: &Values<f64>, _extent: &Extent) -> Result<(), DynamicsError> {
         Ok(())
     }

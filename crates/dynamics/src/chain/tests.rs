@@ -1,4 +1,4 @@
-//! Each step against its definition and its statistics, and the chain as a whole.
+//! Tests of each step against its definition and its statistics, and of the chain as a whole.
 
 use super::{Chain, Observed, SampledMotion, Samples, transform};
 use crate::active::Active;
@@ -127,7 +127,7 @@ fn readings_are_multiples_of_the_step_within_half_of_it() {
         assert!((seen / step - (seen / step).round()).abs() < 1e-9);
         assert!((seen - truth).abs() <= 0.5 * step * (1.0 + 1e-12));
     }
-    // Uniform over the step where the motion sweeps many of them (Widrow).
+    // Uniform over the step if the motion sweeps many of them (Widrow).
     let (mean, deviation) =
         mean_and_deviation(samples.values.iter().zip(&cosine.position).map(|(seen, truth)| seen - truth));
     assert!(mean.abs() < 4e-4 && (deviation / step * 12_f64.sqrt() - 1.0).abs() < 0.05, "{mean} {deviation}");
@@ -204,7 +204,7 @@ fn lost_samples_are_gone_with_their_stamps() {
         .map(|pair| (pair[1] - pair[0] - 1) as f64)
         .filter(|lost| *lost > 0.0)
         .collect();
-    // Gilbert's channel: n·p·L gaps or so of geometric length, standard deviation √(L(L − 1)).
+    // Gilbert's channel: about n·p/L gaps of geometric length, standard deviation √(L(L − 1)).
     let expected_gaps = count as f64 * share / length;
     let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
     let bound = 4.0 * (length * (length - 1.0)).sqrt() / expected_gaps.sqrt();
@@ -332,7 +332,7 @@ fn the_fits_side_agrees_with_the_simulators() {
                 (exact.stamps_s[at], above.stamps_s[at], below.stamps_s[at]),
             ] {
                 let difference = (above - below) / (2.0 * h);
-                // At a sample that just saturates the two sides differ.
+                // At a sample that just saturates, the two sides differ.
                 let edge = ((dual.value - 0.05).abs() - 0.6).abs() < 1e-4;
                 assert!(edge || (dual.partials[which] - difference).abs() < 2e-3, "{which} {at}");
             }

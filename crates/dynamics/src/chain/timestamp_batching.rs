@@ -45,7 +45,8 @@ const DESCRIPTION: Description = Description {
 #[derive(Debug, Clone, Copy)]
 pub struct TimestampBatching;
 
-/// Largest scatter in intervals: four standard deviations below the mean two bursts would coincide.
+/// Largest scatter, in intervals. At this scatter two bursts coincide four standard deviations below the
+/// mean.
 const LARGEST_SCATTER: f64 = 0.25;
 
 impl Step for TimestampBatching {

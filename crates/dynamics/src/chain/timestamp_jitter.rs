@@ -31,13 +31,13 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Independent normal errors of the stamps. Where two of them would change places they stay in order: a logger
-/// writes one after the other.
+/// Independent normal errors of the stamps. Stamps that would change places are sorted: a logger writes one
+/// after the other.
 #[derive(Debug, Clone, Copy)]
 pub struct TimestampJitter;
 
 /// Largest deviation in sample periods. Beyond it stamps change places so often (at half a period in one pair
-/// of thirteen) that their errors are not independent any more.
+/// of thirteen) that their errors are no longer independent.
 const LARGEST: f64 = 0.5;
 
 impl Step for TimestampJitter {

@@ -1,4 +1,4 @@
-//! A spring that is stiffer on one side.
+//! Spring that is stiffer on one side.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A spring that is stiffer on one side: −k₂·(θ − θ_rest)².
+/// Spring that is stiffer on one side: −k₂·(θ − θ_rest)².
 #[derive(Debug, Clone, Copy)]
 pub struct AsymmetricStiffness;
 

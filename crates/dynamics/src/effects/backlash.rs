@@ -30,7 +30,7 @@ const DESCRIPTION: Description = Description {
 };
 
 /// Play between the spring and the body: the nominal spring's torque gets a dead zone of ±b around the rest
-/// angle, which is to add +k·sat(θ − θ_rest, ±b).
+/// angle, which adds +k·sat(θ − θ_rest, ±b).
 ///
 /// Regions: 0 inside the dead zone, ±1 beyond it.
 #[derive(Debug, Clone, Copy)]

@@ -1,4 +1,4 @@
-//! A preload.
+//! Preload.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::{Export, Joint};
@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A preload: +τ₀. The rest position is then θ_rest + τ₀/k.
+/// Preload: +τ₀. The rest position is then θ_rest + τ₀/k.
 #[derive(Debug, Clone, Copy)]
 pub struct ConstantTorque;
 

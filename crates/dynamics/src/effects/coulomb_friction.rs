@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Dry friction of constant size: −τ_c·sign(θ̇), holding at rest against up to τ_c.
+/// Dry friction of constant size: −τ_c·sign(θ̇). At rest it holds against up to τ_c.
 #[derive(Debug, Clone, Copy)]
 pub struct CoulombFriction;
 

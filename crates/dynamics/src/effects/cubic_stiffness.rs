@@ -1,4 +1,4 @@
-//! A spring that hardens or softens symmetrically.
+//! Spring that hardens or softens symmetrically.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A spring that hardens or softens symmetrically: −k₃·(θ − θ_rest)³.
+/// Spring that hardens or softens symmetrically: −k₃·(θ − θ_rest)³.
 #[derive(Debug, Clone, Copy)]
 pub struct CubicStiffness;
 

@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// Viscous damping that changes with time: c·(1 + α·t), which is to add −c·α·t·θ̇. Time counts from 0 of the
+/// Viscous damping that changes with time: c·(1 + α·t), which adds −c·α·t·θ̇. Time counts from 0 of the
 /// record's own clock.
 #[derive(Debug, Clone, Copy)]
 pub struct DampingDrift;

@@ -1,4 +1,4 @@
-//! A stop on one side.
+//! Stop on one side.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
@@ -49,7 +49,7 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// A stop on one side (Hunt–Crossley contact with a linear spring): the torque −k_s·p·max(0, 1 + χ·ṗ) away from
+/// Stop on one side (Hunt–Crossley contact with a linear spring): the torque −k_s·p·max(0, 1 + χ·ṗ) away from
 /// the stop, where p > 0 is the depth beyond θ_s. It starts from zero at contact, takes energy out, and never
 /// pulls. The stop lies on the side of θ_s away from the rest angle.
 ///
@@ -62,7 +62,7 @@ const FREE: i8 = 1;
 const PRESSING: i8 = 2;
 const RECEDING: i8 = 3;
 
-/// Side of the stop: 1 above the rest angle, −1 below.
+/// Returns the side of the stop: 1 above the rest angle, −1 below.
 fn side(region: i8) -> f64 {
     f64::from(region.signum())
 }
@@ -71,7 +71,7 @@ fn depth<S: Scalar>(angle: S, moment: &Moment<S>) -> S {
     (moment.position - angle) * side(moment.region)
 }
 
-/// Contact torque in units of the spring's: 1 + χ·ṗ.
+/// Returns the contact torque in units of the spring's: 1 + χ·ṗ.
 fn factor<S: Scalar>(dissipation: S, moment: &Moment<S>) -> S {
     dissipation * moment.velocity * side(moment.region) + 1.0
 }

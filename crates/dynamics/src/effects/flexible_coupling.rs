@@ -1,4 +1,4 @@
-//! A second body on a spring.
+//! Second body on a spring.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::{Export, StateExport};
@@ -47,8 +47,8 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A second body on a spring and damper: +k₂·(ψ − θ) + c₂·(ψ̇ − θ̇) with the hidden motion
-/// I₂·ψ̈ = −k₂·(ψ − θ) − c₂·(ψ̇ − θ̇). At a start it moves along, the coupling relaxed, unless told otherwise.
+/// Second body on a spring and damper: +k₂·(ψ − θ) + c₂·(ψ̇ − θ̇) with the hidden motion I₂·ψ̈ = −k₂·(ψ − θ)
+/// − c₂·(ψ̇ − θ̇). At a start it moves along with the coupling relaxed, unless its state is given.
 #[derive(Debug, Clone, Copy)]
 pub struct FlexibleCoupling;
 

@@ -1,4 +1,4 @@
-//! The weight of an unbalanced arm.
+//! Weight of an unbalanced arm.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::{Export, Joint};
@@ -39,7 +39,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// The weight of an unbalanced arm: −m·g·l·sin(θ + φ).
+/// Weight of an unbalanced arm: −m·g·l·sin(θ + φ).
 #[derive(Debug, Clone, Copy)]
 pub struct Gravity;
 

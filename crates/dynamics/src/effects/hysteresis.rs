@@ -39,16 +39,16 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Dry friction with a pre-sliding spring (Dahl; Bouc–Wen with n = 1, γ = 0): −τ_h·z with the hidden state
-/// ż = (θ̇ − |θ̇|·z)/δ. A stretch of motion in one direction brings z to that direction within a few δ;
-/// stiffness τ_h/δ at small displacement.
+/// Dry friction with a pre-sliding spring (Dahl; Bouc–Wen with n = 1, γ = 0): −τ_h·z with the hidden state ż
+/// = (θ̇ − |θ̇|·z)/δ. A stretch of motion in one direction brings z to that direction within a few δ; the
+/// stiffness is τ_h/δ at small displacement.
 ///
-/// Regions: 0 while z builds up, 1 once it lies within 1e-13 of the direction of motion. It is then put
-/// there: the equation, which has become stiff, is replaced by what it tends to.
+/// Regions: 0 while z builds up, 1 once it lies within 1e-13 of the direction of motion. It is then set to
+/// that direction: the equation has become stiff and is replaced by its limit.
 #[derive(Debug, Clone, Copy)]
 pub struct Hysteresis;
 
-/// Distance of z from ±1 at which it counts as built up. The torque is off by at most this part of τ_h.
+/// Distance of z from ±1 at which it counts as built up. The error of the torque is at most this part of τ_h.
 const SATURATED: f64 = 1e-13;
 
 impl Law for Hysteresis {

@@ -1,4 +1,4 @@
-//! The command arrives late.
+//! Delay of the command.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -29,7 +29,7 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// The command arrives late: τ(t − d). The integrators read the delay and shift the input; before its first
+/// Command that arrives late: τ(t − d). The integrators read the delay and shift the input; before its first
 /// value has arrived that value acts.
 #[derive(Debug, Clone, Copy)]
 pub struct InputDelay;

@@ -1,4 +1,4 @@
-//! The drive gives no more than so much.
+//! Limit of the drive's torque.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -29,10 +29,9 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// The drive gives no more than so much: the input's torque is clipped at ±τ_max, which is to add
-/// clip(τ, ±τ_max) − τ.
+/// Limit of the drive's torque: the input's torque is clipped at ±τ_max, which adds clip(τ, ±τ_max) − τ.
 ///
-/// Regions: 0 where the input passes, ±1 where it is clipped.
+/// Regions: 0 while the input passes, ±1 while it is clipped.
 #[derive(Debug, Clone, Copy)]
 pub struct InputSaturation;
 

@@ -1,4 +1,4 @@
-//! The effects, one file each. The list that counts is [`crate::registry`].
+//! Effects in the system, one file each. The complete list is [`crate::registry`].
 
 mod asymmetric_stiffness;
 mod backlash;

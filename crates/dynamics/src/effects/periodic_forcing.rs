@@ -1,4 +1,4 @@
-//! An unmeasured shaker.
+//! Unmeasured shaker.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -47,7 +47,7 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// An unmeasured shaker: +τ_f·sin(Ω·t + φ). Time counts from 0 of the record's own clock.
+/// Unmeasured shaker: +τ_f·sin(Ω·t + φ). Time counts from 0 of the record's own clock.
 #[derive(Debug, Clone, Copy)]
 pub struct PeriodicForcing;
 

@@ -1,4 +1,4 @@
-//! A torque without a name that repeats along the position.
+//! Torque without a name that repeats along the position.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -47,10 +47,10 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A torque without a name that repeats along the position: −τ·sin(n·θ + φ).
+/// Torque without a name that repeats along the position: −τ·sin(n·θ + φ).
 ///
-/// It is no effect of the vocabulary: magnets, bearings and screws all do this, and a record does not tell them apart.
-/// The reference is for one of these causes, the cogging of a motor.
+/// It is not an effect of the vocabulary: magnets, bearings and screws all cause it, and a record does not
+/// tell them apart. The reference is for one of these causes, the cogging of a motor.
 #[derive(Debug, Clone, Copy)]
 pub struct PositionTorque;
 

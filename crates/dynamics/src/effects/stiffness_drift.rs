@@ -1,4 +1,4 @@
-//! A spring that changes with time.
+//! Spring that changes with time.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -29,8 +29,8 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A spring that changes with time: its stiffness is k·(1 + α·t), which is to add −k·α·t·(θ − θ_rest). Time
-/// counts from 0 of the record's own clock.
+/// Spring that changes with time: its stiffness is k·(1 + α·t), which adds −k·α·t·(θ − θ_rest). Time counts
+/// from 0 of the record's own clock.
 #[derive(Debug, Clone, Copy)]
 pub struct StiffnessDrift;
 

@@ -1,4 +1,4 @@
-//! Dry friction that falls off with speed.
+//! Dry friction that falls with speed.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
@@ -49,11 +49,11 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Dry friction that falls off with speed: −[τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²)]·sign(θ̇), holding at rest against up
-/// to τ_s.
+/// Dry friction that falls with speed: −[τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²)]·sign(θ̇). At rest it holds
+/// against up to τ_s.
 ///
-/// Regions: 1 below 6.01·v_s, 0 above, where the excess is below rounding and left out. So narrow a peak at
-/// slow speed cannot slip between the steps of an integrator.
+/// Regions: 1 below 6.01·v_s; 0 above it, where the excess is below rounding and left out. With these regions
+/// the narrow peak at slow speed cannot slip between the steps of an integrator.
 #[derive(Debug, Clone, Copy)]
 pub struct StribeckFriction;
 

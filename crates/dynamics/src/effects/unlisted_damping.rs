@@ -1,4 +1,4 @@
-//! A damping without a name: of higher order than the laws of the vocabulary.
+//! Damping without a name, of higher order than the laws of the vocabulary.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -39,10 +39,10 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A damping without a name: −(a·θ̇³ + b·(θ − θ_rest)²·θ̇).
+/// Damping without a name: −(a·θ̇³ + b·(θ − θ_rest)²·θ̇).
 ///
-/// It is no effect of the vocabulary, and stands for dampings that are none either: drag of another power, a damping that
-/// grows or falls with the deflection.
+/// It is not an effect of the vocabulary, and represents dampings outside it: drag of another power, or a
+/// damping that grows or falls with the deflection.
 #[derive(Debug, Clone, Copy)]
 pub struct UnlistedDamping;
 

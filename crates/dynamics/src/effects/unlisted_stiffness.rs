@@ -1,4 +1,4 @@
-//! A stiffness without a name: of higher order than those of the vocabulary.
+//! Stiffness without a name, of higher order than those of the vocabulary.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::export::Export;
@@ -29,9 +29,10 @@ const DESCRIPTION: Description = Description {
     smooth: true,
 };
 
-/// A stiffness without a name: −k₅·(θ − θ_rest)⁵.
+/// Stiffness without a name: −k₅·(θ − θ_rest)⁵.
 ///
-/// It is no effect of the vocabulary, and stands for springs that bend otherwise than by the square or the cube.
+/// It is not an effect of the vocabulary, and represents nonlinear springs of another power than the square
+/// or the cube.
 #[derive(Debug, Clone, Copy)]
 pub struct UnlistedStiffness;
 

@@ -1,27 +1,27 @@
 //! Collocation at Gauss–Legendre nodes.
 
-/// Most stages that a step has.
+/// Maximum number of stages of a step.
 pub(crate) const MOST_STAGES: usize = 16;
 
-/// The tables of Gauss–Legendre collocation with a number of stages, on the unit interval.
+/// Tables of Gauss–Legendre collocation with a given number of stages, on the unit interval.
 ///
 /// The right-hand side along a step is represented by its Legendre series, sampled at the zeros of the
-/// Legendre polynomial P_s. The step's end is of order 2s, its interior of order s + 1. The tables are
+/// Legendre polynomial P_s. The end of the step is of order 2s, its interior of order s + 1. The tables are
 /// computed, not copied: zeros by Newton's method, everything else from the orthogonality of the P_k.
 ///
 /// # Reference
 /// Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed., Springer 2006, section II.1.3.
 #[derive(Debug, Clone)]
 pub(crate) struct Gauss {
-    /// The nodes, ascending in (0, 1).
+    /// Nodes, ascending in (0, 1).
     pub(crate) nodes: Vec<f64>,
-    /// Row i holds the integrals from 0 to node i of the Lagrange polynomials.
+    /// Row i holds the integrals of the Lagrange polynomials from 0 to node i.
     pub(crate) matrix: Vec<Vec<f64>>,
-    /// Row k turns values at the nodes into the coefficient of P_k.
+    /// Row k converts values at the nodes to the coefficient of P_k.
     pub(crate) analysis: Vec<Vec<f64>>,
 }
 
-/// P_0 … P_n at x, by the three-term recurrence.
+/// Computes P_0 … P_n at x by the three-term recurrence.
 fn legendre(x: f64, values: &mut [f64]) {
     let (mut before, mut last) = (0.0, 1.0);
     for (k, value) in values.iter_mut().enumerate() {
@@ -35,7 +35,8 @@ fn legendre(x: f64, values: &mut [f64]) {
     }
 }
 
-/// The integrals of as many Legendre polynomials as there are stages, up to a part τ of the step; the rest is 0.
+/// Returns the integrals of the Legendre polynomials up to a part τ of the step, one for each stage; the rest
+/// is 0.
 pub(crate) fn basis(tau: f64, stages: usize) -> [f64; MOST_STAGES] {
     debug_assert!(stages <= MOST_STAGES, "{stages} of {MOST_STAGES} stages");
     let mut basis = [0.0; MOST_STAGES];
@@ -45,7 +46,7 @@ pub(crate) fn basis(tau: f64, stages: usize) -> [f64; MOST_STAGES] {
     basis
 }
 
-/// ∫₀^τ P_k(2t − 1) dt for k = 0 … integrals.len() − 1.
+/// Computes ∫₀^τ P_k(2t − 1) dt for k = 0 … integrals.len() − 1.
 pub(crate) fn integrals(tau: f64, integrals: &mut [f64]) {
     let x = 2.0 * tau - 1.0;
     // P_{k−1}, P_k and P_{k+1} in turn.
@@ -67,7 +68,7 @@ pub(crate) fn integrals(tau: f64, integrals: &mut [f64]) {
 }
 
 impl Gauss {
-    /// The tables for 1 to 16 stages; other numbers are brought into that range.
+    /// Computes the tables for 1 to 16 stages; other numbers are clamped to that range.
     pub(crate) fn new(stages: usize) -> Self {
         let stages = stages.clamp(1, MOST_STAGES);
         let count = stages as f64;

@@ -1,13 +1,14 @@
-//! Where a step meets an edge, and the step cut to end there.
+//! Detection of the edge that a step meets, and landing of the step on it.
 
 use super::run::{Landing, MOST_ITERATIONS, Run};
 use super::step::{Solved, Step, Vector, state};
 use crate::edges::Edge;
 
-/// Part of a step over which a margin's slope is taken: its cube is far below what a visit behind an edge does.
+/// Part of a step over which a margin's slope is taken. Its cube is far below the effect of a visit behind an
+/// edge.
 const SLOPE: f64 = 1e-5;
 
-/// A part of a step and the margin of an edge there.
+/// Part of a step, and the margin of an edge there.
 #[derive(Debug, Clone, Copy)]
 struct Look {
     tau: f64,
@@ -15,14 +16,14 @@ struct Look {
 }
 
 impl Run<'_> {
-    /// The edge that the step meets first, and the part of the step at which its polynomial meets it.
+    /// Returns the edge that the step meets first, and the part of the step at which its polynomial meets it.
     pub(super) fn first_edge(&self, step: &Step) -> Option<(Edge, f64)> {
         let edges = self.looks(step);
         let met = edges.iter().filter_map(|(edge, looks)| Some((*edge, self.meeting(step, *edge, looks)?)));
         met.reduce(|first, other| if other.1 < first.1 { other } else { first })
     }
 
-    /// The margins of every edge at the beginning, the nodes and the end of a step.
+    /// Returns the margins of every edge at the start, the nodes and the end of a step.
     fn looks(&self, step: &Step) -> Vec<(Edge, Vec<Look>)> {
         let mut edges: Vec<(Edge, Vec<Look>)> = Vec::new();
         let begin = state(step.from, &step.begin, self.drive.torque(step.from));
@@ -51,7 +52,7 @@ impl Run<'_> {
         self.field.edges(self.directed, &state, &self.mode, visit);
     }
 
-    /// The part of a step at which the polynomial first meets one edge.
+    /// Returns the part of a step at which the polynomial first meets one edge.
     fn meeting(&self, step: &Step, edge: Edge, looks: &[Look]) -> Option<f64> {
         let mut before: Option<Look> = None;
         for (number, pair) in looks.windows(2).enumerate() {
@@ -59,7 +60,7 @@ impl Run<'_> {
             if look.margin < 0.0 {
                 match (edge, last.margin > 0.0) {
                     (_, true) => return Some(self.root(step, edge, last.tau, look.tau)),
-                    // A reversal counts only once the motion has got under way.
+                    // A reversal counts only once the body has started to move.
                     (Edge::Reversal, false) => {}
                     (_, false) => return Some(last.tau),
                 }
@@ -80,7 +81,8 @@ impl Run<'_> {
         None
     }
 
-    /// Where a margin that is positive at both ends of a part of the step becomes negative between them.
+    /// Finds the first zero of a margin that is positive at both ends of a part of the step but negative in
+    /// between.
     fn visit_between(&self, step: &Step, edge: Edge, from: f64, to: f64) -> Option<f64> {
         let slope = |tau: f64| self.margin(step, edge, tau + SLOPE) - self.margin(step, edge, tau - SLOPE);
         if !(slope(from) < 0.0 && slope(to) > 0.0) {
@@ -96,13 +98,13 @@ impl Run<'_> {
         self.field.distance(self.directed, &state, &self.mode, edge).unwrap_or(f64::INFINITY)
     }
 
-    /// The zero of a margin on the polynomial, between a place where it is positive and one where it is
+    /// Finds the zero of a margin on the polynomial, between a point where it is positive and one where it is
     /// negative.
     fn root(&self, step: &Step, edge: Edge, from: f64, to: f64) -> f64 {
         crate::root::bracketed(from, to, |tau| self.margin(step, edge, tau))
     }
 
-    /// Solves the step anew so that it ends on the edge.
+    /// Solves the step again so that it ends on the edge.
     pub(super) fn land(&self, step: &mut Step, edge: Edge, tau: f64) -> Landing {
         let mut size = tau * step.size;
         let resolution = f64::EPSILON * step.from.abs().max(size);
@@ -112,7 +114,8 @@ impl Run<'_> {
         let scale = self.scale_with(size);
         for _ in 0..4 {
             step.size = size;
-            // Twice the iterations: what a slightly longer step took must be enough here.
+            // Twice the iterations: this must suffice for a step that converged with a slightly greater
+            // length.
             let iterations = 2 * MOST_ITERATIONS;
             let solved = step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &scale, iterations);
             if matches!(solved, Solved::TooLarge) {

@@ -1,22 +1,22 @@
-//! The reference integrator: high order, events located to rounding, real sticking.
+//! Reference integrator: high order, events located to rounding, exact sticking.
 //!
-//! Smooth pieces are integrated by Gauss–Legendre collocation of high order (12 stages: the end of a step is of
-//! order 24), with the step chosen from the tail of the Legendre series of the rates. Every edge of a piece
-//! (reversal of the velocity, dead zone, contact, saturation, knots of the input, break-away) is found on
-//! the collocation polynomial, and the step is then solved anew so that it ends there, until the edge is met
-//! to rounding. Dry friction is a set-valued force: at a reversal the system sticks if the torque does not
-//! exceed what friction holds; hidden states and time-dependent torques go on meanwhile and may break it
-//! loose. Nothing is smoothed.
+//! Smooth pieces are integrated by Gauss–Legendre collocation of high order (12 stages: the end of a step is
+//! of order 24). The step size is chosen from the tail of the Legendre series of the rates. Every edge of a
+//! piece (reversal of the velocity, dead zone, contact, saturation, knots of the input, break-away) is
+//! located on the collocation polynomial. The step is then solved again so that it ends there, until the edge
+//! is met to rounding. Dry friction is a set-valued force: at a reversal the system sticks if the torque does
+//! not exceed the holding torque. Hidden states and time-dependent torques continue meanwhile and may break
+//! it loose. Nothing is smoothed.
 //!
 //! # Why not a library
 //! The crates that offer ordinary differential equations with dense output (`differential-equations`,
 //! `ode_solvers`, `diffsol`) locate events on an interpolant of order at most 7 and restart from there, which
-//! costs five digits at a tolerance of 1e-12; none offers quadratures with the order of the step. Collocation
-//! gives the interpolant, the quadratures of the energy accounts and exact landing from one set of tables
-//! that is computed in sixty lines.
+//! costs five digits at a tolerance of 1e-12. None offers quadratures with the order of the step. Collocation
+//! provides the interpolant, the quadratures of the energy accounts and exact landing from one set of tables,
+//! computed in `gauss.rs`.
 //!
 //! # Example
-//! Dry friction stops a swing; what damping and friction took is the energy that it had:
+//! Dry friction stops a swing; the work of damping and friction equals the energy that the swing had:
 //!
 //! ```
 //! use dynamics::reference::{Happening, Tolerance, simulate};
@@ -50,15 +50,15 @@ use crate::error::DynamicsError;
 use crate::input::Input;
 use crate::system::{Start, System};
 
-/// The motion of a system from a start at the first of `times`.
+/// Computes the motion of a system from a start at the first of `times`.
 ///
-/// `times` in seconds, never decreasing; they are also the time that drifts, forcing and input count in. With
-/// `None` for the input it is a free motion. Effects with hidden state start relaxed and moving along.
+/// `times` are in seconds and never decrease; drifts, forcing and input count the same time. With `None` for
+/// the input it is a free motion. Effects with hidden state start relaxed and moving along.
 ///
 /// # Errors
-/// [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`], [`DynamicsError::ReleaseInsideDeadZone`],
-/// [`DynamicsError::Diverged`] where the motion runs away, [`DynamicsError::StepTooSmall`] and
-/// [`DynamicsError::TooManySteps`] where the tolerance is out of reach.
+/// Returns [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`],
+/// [`DynamicsError::ReleaseInsideDeadZone`], [`DynamicsError::Diverged`] if the motion diverges, and
+/// [`DynamicsError::StepTooSmall`] or [`DynamicsError::TooManySteps`] if the tolerance is out of reach.
 pub fn simulate(
     system: &System,
     start: Start,
@@ -72,7 +72,8 @@ pub fn simulate(
     run::Run::new(system, start, input, times, run::Stepping::Adaptive(*tolerance), STAGES)?.motion(times)
 }
 
-/// Stages of the collocation. More stages take fewer, costlier steps; 12 are near the least work at 1e-12.
+/// Number of stages of the collocation. More stages take fewer but costlier steps; 12 are near the least work
+/// at 1e-12.
 const STAGES: usize = 12;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What the reference integrator gives.
+//! Result of the reference integrator: motion, events and energy accounts.
 
 use crate::chain::SampledMotion;
 
@@ -9,53 +9,53 @@ pub enum Happening {
     Reversal,
     /// The system came to rest, held by dry friction.
     Stick,
-    /// The torque overcame the dry friction's hold.
+    /// The torque exceeded the holding torque of dry friction.
     BreakAway,
     /// An effect passed to another of its regions.
     Region {
-        /// The effect's id.
+        /// Id of the effect.
         effect: &'static str,
-        /// The region left.
+        /// Region left.
         from: i8,
-        /// The region entered.
+        /// Region entered.
         to: i8,
     },
 }
 
-/// An event, located to rounding.
+/// Event, located to rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// When, in seconds.
+    /// Time in seconds.
     pub time: f64,
-    /// Position there.
+    /// Position at the event, in rad or m.
     pub position: f64,
-    /// Velocity there.
+    /// Velocity at the event, in rad/s or m/s.
     pub velocity: f64,
     /// Kind of the event.
     pub happening: Happening,
 }
 
-/// Who does work on the body.
+/// Origin of the work done on the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Worker {
-    /// The nominal damping.
+    /// Nominal damping.
     Damping,
-    /// The measured input, after gain and delay.
+    /// Measured input, after gain and delay.
     Input,
-    /// An effect, by its id.
+    /// Effect, by its id.
     Effect(&'static str),
 }
 
-/// Work done on the body since the start, at each time asked for.
+/// Work done on the body since the start, at each requested time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Account {
-    /// Who does it.
+    /// Origin of the work.
     pub worker: Worker,
-    /// ∫ torque·velocity dt in joules (per unit of inertia where the system is).
+    /// ∫ torque·velocity dt in joules (per unit of inertia if the system's units are).
     pub work: Vec<f64>,
 }
 
-/// A motion at the times asked for: each list has one entry for each of these times, but for [`Motion::events`].
+/// Motion at the requested times: each list has one entry for each of these times, except [`Motion::events`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Motion {
     /// Positions in rad or m.
@@ -66,15 +66,16 @@ pub struct Motion {
     pub acceleration: Vec<f64>,
     /// Events, in order.
     pub events: Vec<Event>,
-    /// The work of damping, input and each effect. Together it is the change of the energy
-    /// ½·I·θ̇² + ½·k·(θ − θ_rest)².
+    /// Work of damping, input and each effect. Together they equal the change of the energy ½·I·θ̇² + ½·k·(θ
+    /// − θ_rest)².
     pub accounts: Vec<Account>,
-    /// Steps taken.
+    /// Number of steps taken.
     pub steps: usize,
 }
 
 impl Motion {
-    /// The motion as a measuring chain takes it, at the times in seconds that it was simulated for.
+    /// Returns the motion in the form that a measurement chain takes, at the times in seconds of the
+    /// simulation.
     #[must_use]
     pub fn sampled<'a>(&'a self, times_s: &'a [f64]) -> SampledMotion<'a, f64> {
         SampledMotion {

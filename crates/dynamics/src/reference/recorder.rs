@@ -6,16 +6,16 @@ use super::step::{Step, state};
 use crate::field::{Field, MOST_EFFECTS, Mode};
 use crate::system::Drive;
 
-/// Accounts: damping, input, effects.
+/// Maximum number of accounts: damping, input, effects.
 const MOST_ACCOUNTS: usize = MOST_EFFECTS + 2;
 
-/// Fills a motion while steps are made.
+/// Recorder that fills a motion while steps are made.
 #[derive(Debug)]
 pub(crate) struct Recorder {
     pub(crate) motion: Motion,
-    /// Next of the times asked for.
+    /// Index of the next requested time.
     next: usize,
-    /// Work at the beginning of the present step.
+    /// Work at the start of the present step.
     work: [f64; MOST_ACCOUNTS],
     /// Legendre series of the powers of the present step.
     series: [[f64; MOST_ACCOUNTS]; MOST_STAGES],
@@ -39,7 +39,7 @@ impl Recorder {
         Self { motion, next: 0, work: [0.0; MOST_ACCOUNTS], series: [[0.0; MOST_ACCOUNTS]; MOST_STAGES] }
     }
 
-    /// Whether every time asked for is recorded.
+    /// Returns `true` if every requested time is recorded.
     pub(crate) fn complete(&self, times: &[f64]) -> bool {
         self.next >= times.len()
     }

@@ -1,4 +1,4 @@
-//! The march from piece to piece.
+//! Integration from piece to piece.
 
 use super::gauss::Gauss;
 use super::motion::{Event, Happening, Motion};
@@ -11,33 +11,33 @@ use crate::field::{Field, Mode};
 use crate::input::Input;
 use crate::system::{Drive, Start, System};
 
-/// How steps are chosen.
+/// Choice of the steps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Stepping {
-    /// By the error of each.
+    /// Sized by the error of each step.
     Adaptive(Tolerance),
     /// All of one size in seconds, but cut at events: for tests of the order.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests of the order of convergence use it"))]
     Fixed(f64),
 }
 
-/// Events in a row without any time passing, beyond which the march is stuck.
+/// Maximum number of events in a row without a change of time; beyond it the run is stuck.
 const MOST_EVENTS_AT_ONCE: usize = 64;
 
-/// Iterations of the stage equations beyond which a step counts as too large.
+/// Maximum number of iterations of the stage equations; beyond it a step counts as too large.
 pub(super) const MOST_ITERATIONS: usize = 30;
 
-/// How a step toward an edge ended.
+/// Outcome of a step toward an edge.
 pub(super) enum Landing {
-    /// On the edge.
+    /// The step ends on the edge.
     OnTheEdge,
-    /// The edge lies where the step begins.
+    /// The edge is at the start of the step.
     AtOnce,
     /// The stage equations were not solved.
     Failed,
 }
 
-/// A simulation under way.
+/// Running simulation.
 pub(crate) struct Run<'a> {
     pub(super) field: Field<f64>,
     pub(super) directed: bool,
@@ -51,7 +51,7 @@ pub(crate) struct Run<'a> {
     scale: Vector,
     /// Size of the next step, in seconds.
     size: f64,
-    /// Position beyond which the motion counts as running away.
+    /// Position beyond which the motion counts as diverging.
     bound: f64,
     recorder: Recorder,
 }
@@ -68,7 +68,7 @@ impl<'a> Run<'a> {
         start.check()?;
         crate::times::check(times)?;
         let field = system.field();
-        // No time is asked for: the run is over before it begins.
+        // Without a requested time the run is over before it begins.
         let (time, end) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
         let duration = end - time;
         let drive = Drive::new(input, field.nominal.input_gain, system.input_delay(), time);
@@ -131,7 +131,7 @@ impl<'a> Run<'a> {
         2 + hidden.sum::<usize>()
     }
 
-    /// Passes the input's knots that lie at the present time, and looks what piece the state is on then.
+    /// Passes the input's knots at the present time, and determines the state's piece afterward.
     fn cross_knots(&mut self) {
         let mut crossed = false;
         while self.drive.until() <= self.time {
@@ -143,9 +143,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// One step, to its full size or to the first edge.
+    /// Makes one step, of full size or to the first edge.
     fn advance(&mut self, step: &mut Step, end: f64, times: &[f64]) -> Result<(), DynamicsError> {
-        // A state on the far side of where its mode belongs: rounding at a balance of forces.
+        // The state may be on the wrong side for its mode, because of rounding at a balance of forces.
         if self.directed && self.vector_velocity() * self.mode.direction < 0.0 {
             self.mode = self.field.mode(&state(self.time, &self.vector, self.drive.torque(self.time)));
         }
@@ -164,7 +164,7 @@ impl<'a> Run<'a> {
                 (Solved::Converged, Stepping::Adaptive(tolerance)) => self.factor(step, tolerance.relative),
             };
             if factor >= 1.0 {
-                // A step cut short by the end of a piece says little about the next.
+                // A step cut short by the end of a piece tells little about the next.
                 if matches!(self.stepping, Stepping::Adaptive(_)) {
                     self.size = self.size.max(size * factor.min(if size < self.size { 1.0 } else { 4.0 }));
                 }
@@ -203,7 +203,8 @@ impl<'a> Run<'a> {
         velocity
     }
 
-    /// The sizes that errors are measured by; a variable that has not moved yet counts by how far it would.
+    /// Returns the sizes that errors are compared with. For a variable that has not moved yet, this is its
+    /// motion in a step.
     pub(super) fn scale_with(&self, size: f64) -> Vector {
         let rates =
             |time, vector: &Vector| super::step::rates(&self.field, &self.mode, &self.drive, time, vector);
@@ -220,7 +221,8 @@ impl<'a> Run<'a> {
         scale
     }
 
-    /// By how much the step may change for the next to meet the tolerance; below 1 it has to be repeated.
+    /// Returns the factor by which the step may change for the next to meet the tolerance; below 1 it has to
+    /// be repeated.
     fn factor(&self, step: &Step, relative: f64) -> f64 {
         let mut scale = self.scale;
         for stage in &step.stages {
@@ -237,7 +239,8 @@ impl<'a> Run<'a> {
         if error > 1.0 { factor.clamp(0.1, 0.9) } else { factor.clamp(1.0, 4.0) }
     }
 
-    /// While stuck nothing moves but the torque: the step has to resolve it, or a break-away is missed.
+    /// Returns the tail of the torque's series. While stuck nothing changes but the torque: the step has to
+    /// resolve it, or a break-away is missed.
     fn torque_tail(&self, step: &Step) -> f64 {
         let holding = self.field.holding_torque().unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
         let (mut last, mut before) = (0.0, 0.0);
@@ -249,7 +252,7 @@ impl<'a> Run<'a> {
             last += upper * torque;
             before += lower * torque;
         }
-        // Where large torques hold each other, what seems left of the tail is their rounding, and no step is too long.
+        // If large torques cancel, the apparent tail is their rounding, and no step is too long.
         let rounding = self.field.balance(&state(self.time, &self.vector, self.drive.torque(self.time)));
         (f64::max(last.abs(), 0.1 * before.abs()) - rounding).max(0.0) / holding
     }

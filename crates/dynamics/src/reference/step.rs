@@ -15,7 +15,7 @@ pub(crate) fn state(time: f64, vector: &Vector, input: f64) -> State<f64> {
     State { time, position, velocity, hidden, input }
 }
 
-/// A step and its collocation polynomial.
+/// Step with its collocation polynomial.
 #[derive(Debug, Clone)]
 pub(crate) struct Step {
     pub(crate) from: f64,
@@ -30,11 +30,11 @@ pub(crate) struct Step {
     length: usize,
 }
 
-/// How a step went.
+/// Outcome of solving a step.
 pub(crate) enum Solved {
     /// The stages agree with the rates to rounding.
     Converged,
-    /// They do not: the step is too large for fixed-point iteration.
+    /// The stages do not agree: the step is too large for fixed-point iteration.
     TooLarge,
 }
 
@@ -65,8 +65,8 @@ impl Step {
         self.guess(field, mode, drive);
         let mut last = f64::INFINITY;
         for _ in 0..iterations {
-            // Every stage takes the newest rates of the others: an integral equation in time is solved almost as
-            // one marches, in half the iterations of a simultaneous update.
+            // Every stage uses the newest rates of the others: an integral equation in time is then solved
+            // almost by marching, in half the iterations of a simultaneous update.
             let mut change = 0.0_f64;
             for (number, (row, node)) in gauss.matrix.iter().zip(&gauss.nodes).enumerate() {
                 let mut sum = [0.0; LENGTH];
@@ -83,7 +83,7 @@ impl Step {
                 let Some(rate) = self.rates.get_mut(number) else { continue };
                 for ((old, new), scale) in rate.iter_mut().zip(new).zip(scale).take(self.length) {
                     let moved = (*old - new).abs() * self.size / scale.max(f64::MIN_POSITIVE);
-                    // `max` passes over what is not a number.
+                    // `max` ignores NaN.
                     change = if moved.is_finite() { change.max(moved) } else { f64::INFINITY };
                     *old = new;
                 }
@@ -94,7 +94,7 @@ impl Step {
             if !change.is_finite() {
                 return Solved::TooLarge;
             }
-            // Rounding ends the descent a little above the last bit; then more iterations bring nothing.
+            // Rounding ends the descent slightly above the last bit; more iterations then gain nothing.
             if change < 1e-15 || (change >= last && change < 1e-12) {
                 self.analyze(gauss);
                 return Solved::Converged;
@@ -123,12 +123,12 @@ impl Step {
         }
     }
 
-    /// The state at a part τ of the step, 0 to 1.
+    /// Returns the state at a part τ of the step, 0 to 1.
     pub(crate) fn at(&self, tau: f64) -> Vector {
         self.with_basis(&basis(tau, self.series.len()))
     }
 
-    /// The state where the integrals of the Legendre polynomials are known.
+    /// Returns the state, given the integrals of the Legendre polynomials.
     pub(crate) fn with_basis(&self, basis: &[f64; MOST_STAGES]) -> Vector {
         let mut vector = self.begin;
         for (coefficient, basis) in self.series.iter().zip(basis) {
@@ -140,14 +140,15 @@ impl Step {
         vector
     }
 
-    /// The error of the collocation polynomial relative to `scale`, from the tail of its Legendre series.
+    /// Returns the error of the collocation polynomial relative to `scale`, from the tail of its Legendre
+    /// series.
     pub(crate) fn error(&self, scale: &Vector) -> f64 {
         let [.., before, last] = self.series.as_slice() else { return 0.0 };
         let stages = self.series.len() as f64;
         let tails = last.iter().zip(before).zip(scale).take(self.length);
         tails
             .map(|((last, before), scale)| {
-                // The two last coefficients: by symmetry one of them may vanish.
+                // The last two coefficients are used because one of them may vanish by symmetry.
                 let tail = last.abs().max(0.1 * before.abs());
                 tail * self.size / (2.0 * stages * scale.max(f64::MIN_POSITIVE))
             })

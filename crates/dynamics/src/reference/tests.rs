@@ -196,8 +196,8 @@ fn a_hidden_body_goes_on_while_the_friction_holds() {
     assert!(motion.events.iter().any(|event| event.happening == Happening::BreakAway));
 }
 
-/// The friction is so small beside the spring that the rounding of the angle, against a rest angle that is not 0, moves
-/// the torque by more than the tolerance's part of the hold.
+/// The friction is so small compared with the spring that rounding of the angle, with a rest angle that is
+/// not 0, changes the torque by more than the tolerance's part of the hold.
 #[test]
 fn what_rounding_moves_while_stuck_shortens_no_step() {
     let nominal = Nominal::new(4e-4, 2.8e-4, 0.7, -0.0376).unwrap();
@@ -273,7 +273,7 @@ fn the_input_acts_as_held_delayed_and_clipped() {
 #[test]
 fn a_failing_landing_repeats_the_step() {
     // Regression: at this tolerance a step toward the end of the pre-sliding failed to converge when it was
-    // cut to end there, and the stale polynomial of the uncut step was taken.
+    // cut to end there, and the stale polynomial of the uncut step was used.
     let system = with(nominal(), &[("hysteresis", &[0.3, 0.002]), ("stribeck_friction", &[0.05, 0.2, 0.5])]);
     let times = grid(3.0, 1000.0);
     let motion = free(&system, Start::release(0.7), &times);

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Tolerance {
     /// Error of a step relative to the largest position, velocity and hidden state so far; 1e-14 to 1e-2.
     pub relative: f64,
-    /// Most steps before [`DynamicsError::TooManySteps`](crate::DynamicsError::TooManySteps).
+    /// Maximum number of steps before [`DynamicsError::TooManySteps`](crate::DynamicsError::TooManySteps).
     pub most_steps: usize,
 }
 

@@ -3,7 +3,7 @@
 use super::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A complex number. Im f(x + ih)/h is f′(x) to rounding for a tiny h, with no difference taken (Squire,
+/// Complex number. Im f(x + ih)/h is f′(x) to rounding for a tiny h, without taking a difference (Squire,
 /// Trapp, SIAM Review 40 (1998) 110).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Complex {

@@ -3,7 +3,7 @@
 use super::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value with its partial derivatives with respect to `N` variables.
+/// Value with its partial derivatives with respect to `N` variables.
 ///
 /// ```
 /// use dynamics::scalar::{Dual, Scalar};
@@ -17,14 +17,14 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Griewank, Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, section 3.1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<const N: usize> {
-    /// The value.
+    /// Value.
     pub value: f64,
-    /// The partial derivatives.
+    /// Partial derivatives.
     pub partials: [f64; N],
 }
 
 impl<const N: usize> Dual<N> {
-    /// The variable with number `index` (from 0) at a value; a constant where `index` is `N` or more.
+    /// Creates the variable with number `index` (from 0) at a value; a constant if `index` is `N` or more.
     #[must_use]
     pub fn variable(value: f64, index: usize) -> Self {
         let mut partials = [0.0; N];
@@ -34,12 +34,12 @@ impl<const N: usize> Dual<N> {
         Self { value, partials }
     }
 
-    /// The chain rule: a function's value and its derivative at `self.value`.
+    /// Applies the chain rule, given a function's value and its derivative at `self.value`.
     fn chain(self, value: f64, derivative: f64) -> Self {
         Self { value, partials: self.partials.map(|partial| partial * derivative) }
     }
 
-    /// `own`·∂self + `others`·∂other, beside a value.
+    /// Returns a value with the partial derivatives `own`·∂self + `others`·∂other.
     fn combine(self, other: Self, value: f64, own: f64, others: f64) -> Self {
         let mut partials = self.partials;
         for (partial, &second) in partials.iter_mut().zip(&other.partials) {

@@ -1,8 +1,8 @@
-//! Numbers that a force law can be evaluated on.
+//! Numbers on which a force law can be evaluated.
 //!
-//! A law is written once, over any [`Scalar`]: doubles give the force, [`Dual`] numbers its exact
-//! derivatives, and expressions (inside [`crate::sensitivity`]) its Taylor series. No second, hand-written
-//! derivative exists that could disagree with the law.
+//! A law is written once, over any [`Scalar`]: doubles yield the force, [`Dual`] numbers its exact
+//! derivatives, and expressions (inside [`crate::sensitivity`]) its Taylor series. There is no second,
+//! hand-written derivative that could disagree with the law.
 
 #[cfg(test)]
 mod complex;
@@ -16,7 +16,7 @@ pub(crate) use rounded::Rounded;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A commutative field with the elementary functions that force laws use.
+/// Commutative field with the elementary functions that force laws use.
 pub trait Scalar:
     Copy
     + From<f64>
@@ -29,15 +29,15 @@ pub trait Scalar:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// Sine of an angle in radians.
+    /// Returns the sine of an angle in radians.
     #[must_use]
     fn sin(self) -> Self;
 
-    /// Cosine of an angle in radians.
+    /// Returns the cosine of an angle in radians.
     #[must_use]
     fn cos(self) -> Self;
 
-    /// The exponential.
+    /// Returns the exponential.
     #[must_use]
     fn exp(self) -> Self;
 }

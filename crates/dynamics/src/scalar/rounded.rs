@@ -1,11 +1,11 @@
-//! Running error analysis: a value and how much of it may be rounding.
+//! Running error analysis: a value with a bound for its rounding error.
 
 use super::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A double with a bound, to first order, on its own rounding: numbers that enter are known to one unit in
-/// 2⁵² of their size, and every operation adds as much of its result. Where large terms cancel the bound stays
-/// large. Regrouping sums and factors does not leave it by more than a few times.
+/// Double with a bound, to first order, for its own rounding error. Numbers that enter are known to one unit
+/// in 2⁵² of their size, and every operation adds as much of its result. If large terms cancel, the bound
+/// stays large. Regrouping sums and factors exceeds the bound by no more than a few times.
 ///
 /// # Reference
 /// Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., SIAM 2002, section 3.3.
@@ -16,7 +16,7 @@ pub(crate) struct Rounded {
 }
 
 impl Rounded {
-    /// The result of an operation, with the errors that come along from its operands.
+    /// Creates the result of an operation, with the errors inherited from its operands.
     fn new(value: f64, along: f64) -> Self {
         Self { value, error: along + f64::EPSILON * value.abs() }
     }

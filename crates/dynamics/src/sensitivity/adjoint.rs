@@ -1,4 +1,4 @@
-//! Derivatives of a written-down field, by one sweep backward.
+//! Derivatives of a recorded field by one backward sweep.
 
 use super::expression::Operation;
 use super::graph::Graph;
@@ -6,7 +6,7 @@ use super::node::Node;
 use super::series::{Adjoint, Series, convolve, dot_reversed, first, head};
 
 impl Graph {
-    /// Derivative series of a node with respect to every other, up to and with `degree`.
+    /// Computes the derivative series of a node with respect to every other, up to and including `degree`.
     ///
     /// # Reference
     /// Griewank, Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, sections 3.2 and 13.
@@ -52,15 +52,16 @@ impl Graph {
         }
     }
 
-    /// The derivative series with respect to a leaf, as far as it is not zero.
+    /// Returns the derivative series with respect to a leaf, up to its last coefficient that may differ from
+    /// zero.
     pub(crate) fn derivative(&self, leaf: usize) -> &[f64] {
         let adjoint = self.leaf_node(leaf).and_then(|node| self.adjoints.get(node));
-        // What a result does not depend on has no node.
+        // A leaf that the result does not depend on has no node.
         adjoint.map_or(&[], |adjoint| head(&adjoint.series, adjoint.length))
     }
 }
 
-/// The sweep at one node: the adjoints of the nodes before it are still to be added to.
+/// State of the sweep at one node: the adjoints of earlier nodes are still being accumulated.
 struct Sweep<'a> {
     nodes: &'a [Node],
     series: &'a [Series],
@@ -108,7 +109,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// An adjoint divided by a node's series.
+    /// Returns an adjoint divided by a node's series.
     fn divided(&self, adjoint: &Adjoint, by: usize) -> Adjoint {
         let mut quotient = *adjoint;
         let Some(series) = self.series.get(by) else { return quotient };

@@ -3,7 +3,7 @@
 use super::graph::MOST_STATES;
 use super::series::{LENGTH, Series, head};
 
-/// Columns that are computed side by side.
+/// Number of columns that are computed side by side.
 pub(crate) const LANES: usize = 4;
 
 pub(crate) type Lanes = [f64; LANES];
@@ -20,17 +20,17 @@ struct Block {
     sources: [Wide; MOST_STATES],
 }
 
-/// How the rate of one state variable depends on another.
+/// Dependence of the rate of one state variable on another state variable.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coupling {
     pub(crate) rate: usize,
     pub(crate) state: usize,
-    /// Coefficients from `length` on are zero.
+    /// Number of coefficients in use; those from `length` on are zero.
     pub(crate) length: usize,
     pub(crate) series: Series,
 }
 
-/// The derivatives of the state with respect to all free quantities.
+/// Derivatives of the state with respect to all free quantities.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
     blocks: Vec<Block>,
@@ -45,7 +45,7 @@ impl Columns {
         Self { blocks: vec![block; columns.div_ceil(LANES)], columns, states }
     }
 
-    /// Forgets every derivative.
+    /// Clears every derivative.
     pub(crate) fn clear(&mut self) {
         for block in &mut self.blocks {
             for state in &mut block.states {
@@ -54,7 +54,7 @@ impl Columns {
         }
     }
 
-    /// Forgets the direct influences on a rate, below a degree.
+    /// Clears the direct influences on a rate, below a degree.
     pub(crate) fn clear_sources(&mut self, rate: usize, degree: usize) {
         for source in self.blocks.iter_mut().filter_map(|block| block.sources.get_mut(rate)) {
             for lanes in source.iter_mut().take(degree) {
@@ -75,7 +75,7 @@ impl Columns {
         }
     }
 
-    /// The derivative of a state variable at the beginning of the step.
+    /// Returns the derivative of a state variable at the start of the step.
     pub(crate) fn first(&self, column: usize, state: usize) -> f64 {
         let wide = self.blocks.get(column / LANES).and_then(|block| block.states.get(state));
         let [first, ..] = wide.unwrap_or(&[[0.0; LANES]; LENGTH]);
@@ -84,21 +84,21 @@ impl Columns {
         first.get(column % LANES).copied().unwrap_or(0.0)
     }
 
-    /// The same, to be changed.
+    /// Returns the same derivative as a mutable reference.
     pub(crate) fn first_mut(&mut self, column: usize, state: usize) -> Option<&mut f64> {
         let wide = self.blocks.get_mut(column / LANES)?.states.get_mut(state)?;
         let [first, ..] = wide;
         first.get_mut(column % LANES)
     }
 
-    /// Solves the variational equation along a step, up to and with a degree. `links` tells which rates are
-    /// just another state variable.
+    /// Solves the variational equation along a step, up to and including a degree. `links` names the state
+    /// variable that a rate is identical to, if any.
     pub(crate) fn propagate(&mut self, couplings: &[Coupling], links: &[Option<usize>], degree: usize) {
         for k in 0..degree {
             let divisor = 1.0 / (k + 1) as f64;
             for rate in 0..self.states {
                 let link = links.get(rate).copied().flatten();
-                // Blocks innermost: their sums do not wait for one another.
+                // The loop over blocks is innermost because their sums do not wait for one another.
                 for block in &mut self.blocks {
                     let mut sum = match link {
                         Some(state) => coefficient(&block.states, state, k),
@@ -123,7 +123,7 @@ impl Columns {
         }
     }
 
-    /// Moves the beginning of the step to a time within it.
+    /// Moves the start of the step to a time within it.
     pub(crate) fn advance(&mut self, time: f64, degree: usize) {
         for block in &mut self.blocks {
             for state in block.states.iter_mut().take(self.states) {
@@ -183,7 +183,7 @@ fn product(coupling: &Coupling, state: &Wide, degree: usize, sum: &mut Lanes) {
     }
 }
 
-/// Horner's rule on four columns.
+/// Evaluates a series of four columns by Horner's rule.
 #[inline]
 fn value(series: &Wide, time: f64, degree: usize) -> Lanes {
     let mut sum = [0.0; LANES];

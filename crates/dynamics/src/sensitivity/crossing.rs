@@ -1,24 +1,24 @@
-//! The edge that a step by Taylor series meets first.
+//! Detection of the edge that a step by Taylor series meets first.
 
 use super::march::March;
 use super::series::{LENGTH, Series, head, slope, value};
 use crate::edges::Edge;
 use std::ops::RangeInclusive;
 
-/// Parts of a step at which the sign of a margin is looked at.
+/// Number of parts of a step at which the sign of a margin is evaluated.
 const LOOKS: u32 = 8;
 
-/// A coefficient of a margin this small, relative to all, is rounding: the step begins on the edge.
+/// Size of a margin's coefficient, relative to all, up to which it is rounding: the step begins on the edge.
 const ON_THE_EDGE: f64 = 1e-12;
 
 impl March<'_> {
-    /// The edge that the step meets first, and when after its beginning.
+    /// Returns the edge that the step meets first, and the time of the meeting after the step's start.
     pub(super) fn first_edge(&self, number: usize, degree: usize, size: f64) -> Option<(Edge, f64)> {
         let piece = self.model.graphs.get(number)?;
         let mut first: Option<(Edge, f64)> = None;
         let point = self.point();
         let field = &self.model.field;
-        // At rest what a torque exceeds the hold by may be rounding; how it goes on is not.
+        // At rest the excess of the torque over the hold may be rounding; its further course is not.
         let rests = point.velocity == 0.0 && field.holding_torque().is_some();
         let balance = if rests { field.balance(&point) } else { 0.0 };
         let resolution = 4.0 * f64::EPSILON * self.time.abs();
@@ -52,12 +52,14 @@ impl March<'_> {
     }
 }
 
-/// As [`crossing`], where the coefficient of one order tells by how much the torque exceeds the hold of dry friction:
-/// nothing where it lies in `balance`. What sticks, what breaks away and what turns back at once must not follow
-/// each other without end. So the three differ by more than rounding in what they call balance: a body may stick up to
-/// [`Field::balance`](crate::field::Field::balance) beyond the hold; it breaks away on account of the torque's
-/// slope within twice that; and it turns back on account of it from four times that short of the hold to half of it
-/// beyond.
+/// Does the same as [`crossing`] at rest, where the coefficient of one order tells by how much the torque
+/// exceeds the holding torque of dry friction. Within `balance` this excess counts as zero.
+///
+/// A body that sticks, breaks away and turns back at once must not do so without end. So the three tests
+/// differ by more than rounding in their limits of balance. A body may stick up to
+/// [`Field::balance`](crate::field::Field::balance) beyond the hold. It breaks away because of the torque's
+/// slope within twice that. It turns back because of the slope from four times that short of the hold to half
+/// of it beyond.
 fn from_rest(
     margin: &[f64],
     order: usize,
@@ -75,8 +77,9 @@ fn from_rest(
     crossing(head(&balanced, margin.len()), until, Some(resolution))
 }
 
-/// When a margin, positive now, first becomes negative within a time; 0 where it is about to. `resolution` is
-/// how exactly the present time is known; without it the first coefficient that is not zero is known to be no rounding.
+/// Returns the time at which a margin, positive now, first becomes negative within a time; 0 if it is about
+/// to. `resolution` is the accuracy of the present time. Without it, the first coefficient that is not zero
+/// is known not to be rounding.
 fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> {
     let mut power = 1.0;
     let mut total = 0.0;
@@ -89,12 +92,12 @@ fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> 
     if *first > total - first.abs() {
         return None;
     }
-    // On the edge itself the lowest coefficients are rounding; what counts is how the margin goes on.
+    // On the edge itself the lowest coefficients are rounding; the further course of the margin decides.
     let (mut lowest, mut rest, mut margin, mut power) = (*first, rest, margin, 1.0);
     let rounding = |rest: &[f64], power: f64| {
         // Behind the last coefficient there is none, and without a resolution nothing is rounding.
         let next = rest.first().map_or(0.0, |next| next.abs() * power);
-        // As above.
+        // Without a resolution nothing is rounding.
         resolution.map_or(0.0, |resolution| ON_THE_EDGE * total + next * resolution)
     };
     while lowest.abs() * power <= rounding(rest, power) {

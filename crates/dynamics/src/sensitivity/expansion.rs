@@ -1,10 +1,10 @@
-//! A state expanded into its Taylor series.
+//! Taylor expansion of a state.
 
 use super::graph::{Graph, MOST_STATES};
 use super::series::Series;
 
-/// Expands the state into its series. Where the step cannot be long (`room`), a lower degree may do: it
-/// returns the degree used.
+/// Expands the state into its series and returns the degree used. A lower degree than `most` may suffice if
+/// the step cannot be long (`room`).
 pub(super) fn expand(
     graph: &mut Graph,
     series: &mut [Series; MOST_STATES],

@@ -1,4 +1,4 @@
-//! Force laws written down as expressions.
+//! Force laws recorded as expressions.
 
 use crate::scalar::Scalar;
 use std::cell::RefCell;
@@ -7,7 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// One operation; operands are numbers of earlier nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Operation {
-    /// A quantity given from outside.
+    /// Quantity set from outside.
     Leaf(usize),
     Add(usize, usize),
     Subtract(usize, usize),
@@ -24,7 +24,7 @@ pub(crate) enum Operation {
     Exponential(usize),
 }
 
-/// Writes down what is done to expressions; the same operation on the same operands once.
+/// Recorder of operations on expressions; the same operation on the same operands is recorded once.
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
     operations: RefCell<Vec<Operation>>,
@@ -51,16 +51,16 @@ impl Recorder {
         })
     }
 
-    /// Sine and cosine of a node, always as neighbors: each needs the other's series.
+    /// Records sine and cosine of a node, always as neighbors: each needs the other's series.
     fn circular(&self, operand: usize) -> (Expression<'_>, Expression<'_>) {
         (self.node(Operation::Sine(operand)), self.node(Operation::Cosine(operand)))
     }
 
-    /// The number of a node that stands for an expression.
+    /// Returns the number of the node that represents an expression.
     pub(crate) fn number(&self, expression: Expression<'_>) -> usize {
         match expression {
             Expression::Node { number, .. } => number,
-            // A constant needs a node only where it is a result: any leaf, times zero, plus the constant.
+            // A constant needs a node only if it is a result: any leaf, times zero, plus the constant.
             Expression::Constant(value) => {
                 let leaf = self.push(Operation::Leaf(0));
                 let zero = self.push(Operation::Scale(leaf, 0.0));
@@ -70,7 +70,7 @@ impl Recorder {
     }
 }
 
-/// A number that is not known yet: what a law computes with when it is written down.
+/// Number that is not known yet; a law computes with it while it is recorded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Expression<'r> {
     Constant(f64),

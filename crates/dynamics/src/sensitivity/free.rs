@@ -1,4 +1,4 @@
-//! Which quantities are free, and where they live.
+//! Free quantities and their storage.
 
 use super::graph::{EFFECTS, INPUT, NOMINAL};
 use crate::error::DynamicsError;
@@ -7,7 +7,7 @@ use crate::law::MOST_PARAMETERS;
 use crate::registry::SystemEffect;
 use crate::system::System;
 
-/// A quantity that a fit may move: one column of the sensitivities.
+/// Quantity that a fit may move: one column of the sensitivities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Free {
     /// Nominal inertia.
@@ -20,34 +20,34 @@ pub enum Free {
     RestAngle,
     /// Nominal gain of the input.
     InputGain,
-    /// A parameter of an effect of the system, by the effect's id and the parameter's name.
+    /// Parameter of an effect of the system, by the effect's id and the parameter's name.
     Effect {
-        /// The effect's id.
+        /// Id of the effect.
         id: &'static str,
-        /// The parameter's name.
+        /// Name of the parameter.
         parameter: &'static str,
     },
     /// Position at the start.
     StartPosition,
     /// Velocity at the start.
     StartVelocity,
-    /// A hidden state variable at the start, counted from 0 in the order of the system's effects.
+    /// Hidden state variable at the start, counted from 0 in the order of the system's effects.
     StartHidden(usize),
 }
 
-/// Where a free quantity lives.
+/// Storage of a free quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// A leaf of the written-down field.
+    /// Leaf of the recorded field.
     Leaf(usize),
-    /// The delay of the input: it shifts the input's time. The leaf keeps its value.
+    /// Delay of the input: it shifts the input's time. The leaf keeps its value.
     Delay(usize),
-    /// A state variable at the start.
+    /// State variable at the start.
     Start(usize),
 }
 
 impl Place {
-    /// The leaf of the field with respect to which a derivative is needed.
+    /// Returns `true` if the derivative with respect to this leaf of the field is needed.
     pub(crate) fn influences(self, leaf: usize) -> bool {
         match self {
             Self::Leaf(own) => own == leaf,

@@ -1,4 +1,4 @@
-//! A field written down: the graph of its operations.
+//! Recorded field: the graph of its operations.
 
 use super::expression::{Expression, Operation, Recorder};
 use super::node::Node;
@@ -12,25 +12,25 @@ use crate::nominal::Coefficients;
 /// Numbers of the leaves: time, state, raw input, nominal coefficients, then [`MOST_PARAMETERS`] for each
 /// effect.
 pub(crate) const TIME: usize = 0;
-/// Position and velocity, then the hidden state.
+/// Leaf of the position, followed by velocity and hidden state.
 pub(crate) const STATE: usize = 1;
-/// State variables of a system.
+/// Maximum number of state variables of a system.
 pub(crate) const MOST_STATES: usize = 2 + SYSTEM_HIDDEN;
-/// The input before gain.
+/// Leaf of the input before the gain.
 pub(crate) const INPUT: usize = STATE + MOST_STATES;
-/// Inertia, damping, stiffness, rest angle, input gain.
+/// Leaf of the inertia, followed by damping, stiffness, rest angle and input gain.
 pub(crate) const NOMINAL: usize = INPUT + 1;
-/// Parameters of the first effect.
+/// Leaf of the first effect's first parameter.
 pub(crate) const EFFECTS: usize = NOMINAL + 5;
 
-/// The field of one mode, written down: rates of the state and margins of the edges.
+/// Recorded field of one mode: rates of the state and margins of the edges.
 #[derive(Debug, Clone)]
 pub(crate) struct Graph {
     pub(super) nodes: Vec<Node>,
     program: Program,
-    /// Leaf number to node.
+    /// Node of each leaf.
     leaves: Vec<Option<usize>>,
-    /// The node of each state variable's rate.
+    /// Node of each state variable's rate.
     pub(crate) rates: Vec<usize>,
     pub(crate) edges: Vec<(Edge, usize)>,
     pub(super) series: Vec<Series>,
@@ -38,7 +38,7 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// Writes down the field of a mode. `free` tells which leaves derivatives are wanted for, besides the
+    /// Records the field of a mode. `free` selects the leaves whose derivatives are needed, besides the
     /// state; `states` is the number of state variables.
     pub(crate) fn record(
         field: &Field<f64>,
@@ -121,7 +121,7 @@ impl Graph {
         self.leaves.get(leaf).copied().flatten()
     }
 
-    /// Sets the lowest coefficients of a leaf's series and clears the rest.
+    /// Sets the two lowest coefficients of a leaf's series and clears the rest.
     pub(crate) fn set_leaf(&mut self, leaf: usize, value: f64, slope: f64) {
         if let Some(series) = self.leaf_node(leaf).and_then(|node| self.series.get_mut(node)) {
             *series = [0.0; LENGTH];
@@ -139,8 +139,8 @@ impl Graph {
         }
     }
 
-    /// Computes what depends on parameters only, and from that the program for the rest. The leaves of the
-    /// parameters have to be set.
+    /// Computes everything that depends on parameters only, and compiles the program for the rest. The leaves
+    /// of the parameters have to be set before.
     pub(crate) fn prepare(&mut self) {
         for (number, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.constant) {
             let of = |operand: usize| first(self.series(operand));
@@ -169,7 +169,7 @@ impl Graph {
         self.program.extend(&mut self.series, degree);
     }
 
-    /// A node's series.
+    /// Returns a node's series.
     #[inline]
     pub(crate) fn series(&self, number: usize) -> &Series {
         const ZERO: &Series = &[0.0; LENGTH];
@@ -177,7 +177,7 @@ impl Graph {
         self.series.get(number).unwrap_or(ZERO)
     }
 
-    /// One coefficient of a node's series.
+    /// Returns one coefficient of a node's series.
     #[inline]
     pub(crate) fn coefficient(&self, number: usize, degree: usize) -> f64 {
         debug_assert!(degree < LENGTH, "coefficient {degree} of {LENGTH}");
@@ -185,7 +185,7 @@ impl Graph {
         self.series(number).get(degree).copied().unwrap_or(0.0)
     }
 
-    /// The state variable that a node simply is, if so.
+    /// Returns the state variable that a node is identical to; `None` if it is another expression.
     pub(crate) fn link(&self, number: usize) -> Option<usize> {
         match self.nodes.get(number)?.operation {
             Operation::Leaf(leaf) if (STATE..INPUT).contains(&leaf) => Some(leaf - STATE),
@@ -194,7 +194,8 @@ impl Graph {
     }
 }
 
-/// The nodes of operations, each told whether it depends on parameters only, and on a leaf that derivatives are wanted for.
+/// Creates the nodes of operations, each marked if it depends on parameters only, and if it depends on a leaf
+/// whose derivatives are needed.
 fn nodes(operations: Vec<Operation>, wanted: impl Fn(usize) -> bool) -> Vec<Node> {
     let mut nodes: Vec<Node> = Vec::with_capacity(operations.len());
     for operation in operations {
@@ -234,14 +235,15 @@ fn mark_used(nodes: &mut [Node], results: impl Iterator<Item = usize>) {
     }
 }
 
-/// Marks the nodes whose series are needed by themselves.
+/// Marks the nodes whose own series are needed.
 fn keep(nodes: &mut [Node], results: impl Iterator<Item = usize>) {
     let mut kept: Vec<usize> = results.collect();
     let of = |number: usize| nodes.get(number).map_or((true, false), |node| (node.constant, node.wanted));
     for (number, node) in nodes.iter().enumerate().filter(|(_, node)| node.used && !node.constant) {
         match node.operation {
             Operation::Multiply(a, b) => {
-                // With a constant factor it is linear, but the factor's derivative is the other's series.
+                // With a constant factor the product is linear, but the factor's derivative is the other's
+                // series.
                 let ((a_constant, a_wanted), (b_constant, b_wanted)) = (of(a), of(b));
                 if (a_constant && a_wanted) || !(a_constant || b_constant) {
                     kept.push(b);

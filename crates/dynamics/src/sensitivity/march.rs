@@ -1,4 +1,4 @@
-//! The march from step to step, by Taylor series.
+//! Integration from step to step by Taylor series.
 
 use super::columns::Coupling;
 use super::expansion::expand;
@@ -13,10 +13,10 @@ use crate::input::Input;
 use crate::system::{Drive, Start};
 use std::ops::Range;
 
-/// Steps in a row without any time passing, beyond which the march is stuck.
+/// Maximum number of steps in a row without a change of time; beyond it the run is stuck.
 const MOST_EVENTS_AT_ONCE: usize = 64;
 
-/// A run under way.
+/// Running integration.
 pub(crate) struct March<'a> {
     pub(super) model: &'a mut Model,
     pub(super) drive: Drive<'a>,
@@ -31,9 +31,9 @@ pub(crate) struct March<'a> {
     /// Size of the last step, in seconds.
     pub(super) size: f64,
     pub(super) end: f64,
-    /// Position beyond which the motion counts as running away.
+    /// Position beyond which the motion counts as diverging.
     pub(super) bound: f64,
-    /// Steps since time has last passed.
+    /// Number of steps since time last changed.
     pub(super) at_once: usize,
 }
 
@@ -45,7 +45,7 @@ impl<'a> March<'a> {
         times: &'a [f64],
         response: &'a mut Response,
     ) -> Self {
-        // No time is asked for: the march is over before it begins.
+        // Without a requested time the run is over before it begins.
         let (time, end) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
         let drive = Drive::new(input, model.field.nominal.input_gain, model.delay, time);
         let hidden = start.hidden.unwrap_or_else(|| model.field.relaxed(start.position, start.velocity));
@@ -78,7 +78,8 @@ impl<'a> March<'a> {
         march
     }
 
-    /// A hidden state that is felt by its torque alone is measured by what moves the body as far as the spring does.
+    /// Scales a hidden state that acts by its torque alone: to the value that moves the body as far as the
+    /// spring does.
     fn scale_hidden(&mut self, frequency: f64) {
         let [position, velocity, ..] = self.scale;
         let reach = position.max(velocity / frequency.max(f64::MIN_POSITIVE)) * frequency * frequency;
@@ -111,7 +112,8 @@ impl<'a> March<'a> {
                 *slot = 1.0;
             }
             if relaxed && variable < 2 {
-                // What is relaxed follows the body; the map is linear, so that its values are its derivatives.
+                // A relaxed hidden state follows the body; the map is linear, so that its values are its
+                // derivatives.
                 let (position, velocity) = if variable == 0 { (1.0, 0.0) } else { (0.0, 1.0) };
                 for (index, value) in self.model.field.relaxed(position, velocity).into_iter().enumerate() {
                     if let Some(slot) = self.model.columns.first_mut(column, 2 + index) {
@@ -125,7 +127,7 @@ impl<'a> March<'a> {
     fn prepare_response(&mut self) {
         let (samples, columns) = (self.times.len(), self.model.columns.count());
         let settings = self.model.settings;
-        // Every entry is written by the run; what is left of an earlier one needs no clearing.
+        // The run writes every entry; values of an earlier run need no clearing.
         let sized = |list: &mut Vec<f64>, length: usize| {
             list.resize(length, 0.0);
         };
@@ -175,7 +177,7 @@ impl<'a> March<'a> {
         State { time: self.time, position, velocity, hidden, input }
     }
 
-    /// Rates of the state at the present point, in the present mode.
+    /// Returns the rates of the state at the present point, in the present mode.
     pub(super) fn rates(&self) -> [f64; MOST_STATES] {
         let point = self.point();
         let (acceleration, hidden) = self.model.field.rates(&point, &self.mode);
@@ -187,7 +189,7 @@ impl<'a> March<'a> {
         rates
     }
 
-    /// Passes the input's knots that lie at the present time.
+    /// Passes the input's knots at the present time.
     fn cross_knots(&mut self) {
         while self.drive.until() <= self.time {
             let before = self.rates();
@@ -208,7 +210,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// One step, to its full size or to the first edge.
+    /// Makes one step, of full size or to the first edge.
     fn step(&mut self) -> Result<(), DynamicsError> {
         let number = self.model.piece(&self.mode);
         debug_assert!(number < self.model.graphs.len(), "the piece was just found or written down");
@@ -228,11 +230,11 @@ impl<'a> March<'a> {
             let [first, ..] = series;
             *first = value;
         }
-        // While stuck the state's own series say nothing about the torque's.
+        // While stuck, the state's own series tell nothing about the torque's.
         let reach = if self.mode.sticks() { f64::INFINITY } else { room };
         let degree = expand(graph, &mut series, states, most, reach, &self.scale, settings.tolerance);
         let mut size = self.step_size(&series, degree, number).min(room);
-        // The first step's guess of how far the variables get may have been too long.
+        // The first step's guess of the variables' reach may have been too large.
         while self.response.steps == 0 && size < 0.5 * self.size {
             self.size = size;
             size = self.step_size(&series, degree, number).min(room);
@@ -314,7 +316,7 @@ impl<'a> March<'a> {
         let columns = self.model.columns.count();
         let [position, velocity, ..] = series;
         let (position, velocity) = (head(position, degree + 1), head(velocity, degree + 1));
-        // The last step of a run has to take the last sample along, whatever the rounding.
+        // The last step of a run has to include the last sample, whatever the rounding.
         let last = !to_edge && size >= self.end - self.time;
         while let Some(&time) = self.times.get(self.next) {
             let after = (time - self.time).max(0.0);
@@ -344,7 +346,7 @@ impl<'a> March<'a> {
     }
 }
 
-/// A sample's row of a table that `prepare_response` gave its size.
+/// Returns a sample's row of a table that `prepare_response` has sized.
 fn part<'a>(table: &'a mut [f64], row: &Range<usize>) -> &'a mut [f64] {
     debug_assert!(row.end <= table.len(), "{row:?} of {}", table.len());
     // Never absent: asserted above.

@@ -1,19 +1,19 @@
 //! Motions with exact sensitivities, fast enough for fitting.
 //!
-//! The state is advanced by its Taylor series, of a degree around thirteen and over a large part of a period
-//! at a time; samples are read off the series, however many fall into a step. The law is the one of the
-//! effects' own files, written down once a mode as a graph of operations, whose series follow from the recurrences for
-//! products, quotients, sines and exponentials. One sweep backward through the graph gives the series of all
-//! partial derivatives; with them the variational equation
+//! The state is advanced by its Taylor series, of a degree of about thirteen and over a large part of a
+//! period at a time; samples are evaluated from the series, however many fall into a step. The law is that of
+//! the effects' own files, recorded once per mode as a graph of operations. Its series follow from the
+//! recurrences for products, quotients, sines and exponentials. One backward sweep through the graph yields
+//! the series of all partial derivatives; with them the variational equation
 //!
 //!   δÿ = (∂f/∂y)·δy + ∂f/∂p
 //!
-//! is solved in series as well, for all columns at once. At an event the step ends on the edge; the columns jump
-//! by the saltation matrix δy⁺ = δy⁻ + (f⁻ − f⁺)·δt, which is zero wherever the force is continuous. While stuck the
-//! velocity and its columns are exactly zero.
+//! is also solved in series, for all columns at once. At an event the step ends on the edge; the columns jump
+//! by the saltation matrix δy⁺ = δy⁻ + (f⁻ − f⁺)·δt, which is zero wherever the force is continuous. While
+//! stuck the velocity and its columns are exactly zero.
 //!
 //! # Example
-//! The derivative of a position by the damping, against the difference of two motions:
+//! The derivative of a position by the damping, compared with the difference of two motions:
 //!
 //! ```
 //! use dynamics::sensitivity::{Free, FullState, Model, Settings};
@@ -36,13 +36,14 @@
 //! ```
 //!
 //! # Why series and not an exponential integrator
-//! An integrator of order 4 with one step a sample (260 Hz, 3.5 Hz) leaves 3e-6 rad when the nonlinear part is
-//! 5 % of the spring, more when gravity is all of it. The series costs about the same, reaches rounding, does not
-//! care how large the perturbation is, and does not tie the step to the sampling.
+//! An integrator of order 4 with one step per sample (260 Hz, 3.5 Hz) leaves an error of 3e-6 rad if the
+//! nonlinear part is 5 % of the spring, and more if gravity is all of it. The series costs about the same,
+//! reaches rounding, is independent of the size of the perturbation, and does not tie the step to the
+//! sampling.
 //!
 //! # At kinks
-//! The motion is not differentiable in a start velocity at exactly zero velocity with dry friction, nor where an
-//! edge is only touched; the derivative given is that of the side on which the motion goes on.
+//! The motion is not differentiable by a start velocity at exactly zero velocity with dry friction, nor where
+//! an edge is only touched. The derivative returned is that of the side on which the motion continues.
 //!
 //! # Reference
 //! Jorba, Zou, Experimental Mathematics 14 (2005) 99 (Taylor method, choice of the step); Leine, Nijmeijer,

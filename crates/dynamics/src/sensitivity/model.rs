@@ -1,4 +1,4 @@
-//! A system with free quantities, ready to be run many times.
+//! System with free quantities, prepared for many runs.
 
 use super::columns::{Columns, Coupling};
 use super::free::{Free, Place, place};
@@ -12,22 +12,23 @@ use crate::scalar::Rounded;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 
-/// Settings of a run: what is computed, and how closely.
+/// Settings of a run: outputs and accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Error of a step relative to the largest position, velocity and hidden state so far; above 0, 1e-10 by default.
+    /// Error of a step relative to the largest position, velocity and hidden state so far; above 0, 1e-10 by
+    /// default.
     pub tolerance: f64,
-    /// Degree of the Taylor series, 2 to 19.
+    /// Degree of the Taylor series, 2 to 19; 14 by default.
     pub degree: usize,
-    /// True if velocities are wanted at the samples.
+    /// `true` to compute velocities at the samples.
     pub velocity: bool,
-    /// True if accelerations are wanted at the samples.
+    /// `true` to compute accelerations at the samples.
     pub acceleration: bool,
-    /// True if of the velocities and accelerations that are wanted the sensitivities are wanted too. Those of the
-    /// position always are.
+    /// `true` to compute the sensitivities of those velocities and accelerations that are computed. Those of
+    /// the position are always computed.
     pub rate_sensitivities: bool,
-    /// Most steps before [`DynamicsError::TooManySteps`].
+    /// Maximum number of steps before [`DynamicsError::TooManySteps`].
     pub most_steps: usize,
 }
 
@@ -44,38 +45,39 @@ impl Default for Settings {
     }
 }
 
-/// A system with free quantities. What a run needs is kept: later runs allocate nothing.
+/// System with free quantities. It keeps the buffers of a run: later runs allocate nothing.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(super) field: Field<f64>,
-    /// The field with the rounding of its rates.
+    /// Field that yields the rounding errors of its rates.
     pub(super) rounded: Field<Rounded>,
     pub(super) directed: bool,
     pub(super) delay: f64,
     pub(super) free: Vec<Place>,
     pub(super) states: usize,
     pub(super) settings: Settings,
-    /// The field of each mode met so far.
+    /// Recorded field of each mode met so far.
     pub(super) graphs: Vec<Piece>,
     pub(super) columns: Columns,
     pub(super) couplings: Vec<Coupling>,
     pub(super) shifts: Vec<f64>,
 }
 
-/// The written-down field of one mode.
+/// Recorded field of one mode.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub(super) mode: Mode,
     pub(super) graph: Graph,
-    /// Whether its parameters are those of the field.
+    /// `true` if its parameters are those of the field.
     pub(super) current: bool,
 }
 
 impl Model {
-    /// A system with free quantities, in the order of the columns; there may be none.
+    /// Creates a model of a system with free quantities, in the order of the columns; the list may be empty.
     ///
     /// # Errors
-    /// [`DynamicsError::NotFree`] where a free quantity is not the system's, or named twice.
+    /// Returns [`DynamicsError::NotFree`] if a free quantity does not belong to the system, or is named
+    /// twice.
     pub fn new(system: &System, free: &[Free], settings: Settings) -> Result<Self, DynamicsError> {
         let mut places = Vec::with_capacity(free.len());
         for (index, quantity) in free.iter().enumerate() {
@@ -103,19 +105,20 @@ impl Model {
         })
     }
 
-    /// Number of columns of every sensitivity: one for each free quantity, in the order given to the model.
+    /// Returns the number of columns of every sensitivity: one for each free quantity, in the order given to
+    /// the model.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.free.len()
     }
 
-    /// Gives the free parameters new values: one for each free quantity that is no start value, in order.
+    /// Sets the free parameters: one value for each free quantity that is not a start value, in order.
     ///
-    /// Values outside a parameter's physical range are taken: a fit that ends there has found something.
+    /// Values outside a parameter's physical range are accepted, because a fit that ends there is a finding.
     ///
     /// # Errors
-    /// [`DynamicsError::WrongNumberOfValues`]; [`DynamicsError::NominalOutOfRange`] for an inertia that is not
-    /// above 0 or a value that is not finite.
+    /// Returns [`DynamicsError::WrongNumberOfValues`], or [`DynamicsError::NominalOutOfRange`] for an inertia
+    /// that is not above 0 or a value that is not finite.
     pub fn set(&mut self, values: &[f64]) -> Result<(), DynamicsError> {
         let leaf = |place: &Place| match place {
             Place::Leaf(leaf) | Place::Delay(leaf) => Some(*leaf),
@@ -167,7 +170,7 @@ impl Model {
         }
     }
 
-    /// Number of the piece with the field of a mode, written down when first met.
+    /// Returns the index of the piece with the field of a mode, which is recorded when first met.
     pub(super) fn piece(&mut self, mode: &Mode) -> usize {
         let known = self.graphs.iter().position(|piece| piece.mode == *mode);
         let number = known.unwrap_or_else(|| {

@@ -1,11 +1,11 @@
-//! The operations of a graph, condensed.
+//! Condensed program of a graph's operations.
 
 use super::expression::Operation;
 use super::node::Node;
 use super::series::{LENGTH, Series, convolve, dot_reversed, head};
 
-/// What has to be computed for each coefficient. Chains of sums and of products with constants are one linear
-/// combination each.
+/// Instructions that compute one coefficient of every series. A chain of sums and of products with constants
+/// is condensed into one linear combination.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Program {
     instructions: Vec<Instruction>,
@@ -15,7 +15,7 @@ pub(crate) struct Program {
 
 #[derive(Debug, Clone, Copy)]
 enum Instruction {
-    /// The sum of terms, and an offset to the lowest coefficient.
+    /// Sum of terms, with an offset to the lowest coefficient.
     Linear {
         target: usize,
         from: usize,
@@ -43,7 +43,7 @@ enum Instruction {
     },
 }
 
-/// A linear combination of nodes whose series are kept.
+/// Linear combination of nodes whose series are kept.
 #[derive(Debug, Clone, Default)]
 struct Form {
     offset: f64,
@@ -96,7 +96,7 @@ impl Program {
 
     fn condense(&mut self, number: usize, node: &Node, nodes: &[Node], forms: &[Form]) -> Form {
         debug_assert!(forms.len() == number, "operands come before what they are needed for");
-        // The form of an operand that is not there is 0, and the assertion says that there is none.
+        // The form of a missing operand is 0; the assertion rules this out.
         let of = |operand: usize| forms.get(operand).cloned().unwrap_or_default();
         let constant = |operand: usize| nodes.get(operand).is_some_and(|node| node.constant);
         let form = match node.operation {
@@ -136,7 +136,7 @@ impl Program {
         self.nonlinear(number, Instruction::Linear { target: number, from, until, offset: form.offset })
     }
 
-    /// A node with a series of its own.
+    /// Adds a node with a series of its own.
     fn nonlinear(&mut self, number: usize, instruction: Instruction) -> Form {
         self.instructions.push(instruction);
         Form::of(number)
@@ -198,7 +198,7 @@ impl Program {
 #[inline]
 fn coefficient(series: &[Series], number: usize, degree: usize) -> f64 {
     debug_assert!(number < series.len() && degree < LENGTH, "coefficient {degree} of node {number}");
-    // Never absent: asserted above, and a branch that the processor foretells costs less than a panic's code.
+    // Never absent: asserted above; a well-predicted branch costs less than the code of a panic.
     series.get(number).and_then(|series| series.get(degree)).copied().unwrap_or(0.0)
 }
 
@@ -214,7 +214,7 @@ fn put(series: &mut [Series], number: usize, degree: usize, value: f64) {
     }
 }
 
-/// Coefficient `degree` ≥ 1 of g with g′ = f·a′: (1/d)·Σ j·a_j·f_{d−j}.
+/// Computes coefficient `degree` ≥ 1 of g with g′ = f·a′: (1/d)·Σ j·a_j·f_{d−j}.
 #[inline]
 fn weighted(series: &[Series], a: usize, f: usize, degree: usize) -> f64 {
     let Some((a, f)) = pair(series, a, f) else { return 0.0 };

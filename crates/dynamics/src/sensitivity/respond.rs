@@ -1,4 +1,4 @@
-//! Running a model: its motion with sensitivities.
+//! Runs of a model: its motion with sensitivities.
 
 use super::march::March;
 use super::model::Model;
@@ -7,14 +7,14 @@ use crate::error::DynamicsError;
 use crate::input::Input;
 
 impl Model {
-    /// The motion at `times` from a start at the first of them, with its sensitivities.
+    /// Computes the motion at `times` from a start at the first of them, with its sensitivities.
     ///
-    /// `times` in seconds, never decreasing; they may be uneven and are also the time that drifts, forcing and
-    /// input count in. A column of a start value whose hidden states are relaxed includes their moving along.
+    /// `times` are in seconds and never decrease; they may be uneven, and drifts, forcing and input count the
+    /// same time. If hidden states start relaxed, the column of a start value includes their moving along.
     ///
     /// # Errors
-    /// [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`], [`DynamicsError::Diverged`],
-    /// [`DynamicsError::StepTooSmall`] and [`DynamicsError::TooManySteps`].
+    /// Returns [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`], [`DynamicsError::Diverged`],
+    /// [`DynamicsError::StepTooSmall`] or [`DynamicsError::TooManySteps`].
     pub fn run_into(
         &mut self,
         start: FullState,
@@ -33,7 +33,7 @@ impl Model {
     /// Runs [`Self::run_into`] with new buffers.
     ///
     /// # Errors
-    /// As [`Self::run_into`].
+    /// Returns the same errors as [`Self::run_into`].
     pub fn run(
         &mut self,
         start: FullState,

@@ -1,4 +1,4 @@
-//! Passing to the next piece: how the columns jump at an event.
+//! Passage to the next piece: the jump of the columns at an event.
 
 use super::free::Place;
 use super::graph::{INPUT, STATE, TIME};
@@ -23,7 +23,8 @@ impl March<'_> {
             && self.mode.direction == old.direction
             && self.model.field.holding_torque().is_none()
         {
-            // At rest in balance the torque does not tell which way it goes on; the series has.
+            // At rest in balance the torque does not tell the direction of the further motion; the series has
+            // told it.
             self.mode = self.model.field.moving(&self.point(), -old.direction);
         }
         let after = self.rates();
@@ -53,7 +54,7 @@ impl March<'_> {
         }
     }
 
-    /// How much later each free quantity makes the event: −δm/ṁ with the margin m of the edge.
+    /// Computes by how much each free quantity delays the event: −δm/ṁ with the margin m of the edge.
     fn shift(&mut self, edge: Edge, number: usize) {
         let point = self.point();
         let raw = if self.drive.is_present() { self.drive.raw(self.time) } else { (0.0, 0.0) };
@@ -75,7 +76,8 @@ impl March<'_> {
         graph.extend(1);
         let speed = graph.coefficient(node, 1);
         graph.differentiate(node, 0);
-        // The derivative with respect to what a margin does not depend on is an empty series, and zero.
+        // The derivative with respect to a leaf that a margin does not depend on is an empty series, and
+        // zero.
         let partial = |leaf: usize| graph.derivative(leaf).first().copied().unwrap_or(0.0);
         for (column, (shift, place)) in shifts.iter_mut().zip(free.iter()).enumerate() {
             let mut moved: f64 =

@@ -1,33 +1,33 @@
 //! Truncated Taylor series.
 
-/// Coefficients in a series; the highest degree is one less.
+/// Number of coefficients in a series; the highest degree is one less.
 pub(crate) const LENGTH: usize = 20;
 
-/// A Taylor series in the time since the step began.
+/// Taylor series in the time since the step began.
 pub(crate) type Series = [f64; LENGTH];
 
-/// The first `length` entries of a list that has as many.
+/// Returns the first `length` entries of a list that has at least as many.
 #[inline]
 pub(crate) fn head<T>(list: &[T], length: usize) -> &[T] {
     debug_assert!(length <= list.len(), "{length} of {} entries", list.len());
     list.get(..length).unwrap_or(list)
 }
 
-/// The coefficient of degree 0.
+/// Returns the coefficient of degree 0.
 #[inline]
 pub(crate) fn first(series: &Series) -> f64 {
     let [first, ..] = series;
     *first
 }
 
-/// Coefficient `degree` of a product.
+/// Returns coefficient `degree` of a product.
 #[inline]
 pub(crate) fn convolve(a: &Series, b: &Series, degree: usize) -> f64 {
     dot_reversed(head(a, degree + 1), head(b, degree + 1))
 }
 
-/// Σ aᵢ·b₋ᵢ of two lists of one length, the second read backward. Two sums side by side: one alone would wait for
-/// itself.
+/// Returns Σ aᵢ·b₋ᵢ of two lists of equal length, the second read backward. It keeps two sums, since each
+/// addition to a single sum would wait for the one before.
 #[inline]
 pub(crate) fn dot_reversed(a: &[f64], b: &[f64]) -> f64 {
     debug_assert_eq!(a.len(), b.len(), "lists of one length");
@@ -44,20 +44,20 @@ pub(crate) fn dot_reversed(a: &[f64], b: &[f64]) -> f64 {
     }
 }
 
-/// The value of a series at a time after the step began.
+/// Evaluates a series at a time after the step began.
 #[inline]
 pub(crate) fn value(series: &[f64], time: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * time + coefficient)
 }
 
-/// The time derivative of a series at a time after the step began.
+/// Evaluates the time derivative of a series at a time after the step began.
 #[inline]
 pub(crate) fn slope(series: &[f64], time: f64) -> f64 {
     let terms = series.iter().enumerate().skip(1).rev();
     terms.fold(0.0, |sum, (power, coefficient)| sum * time + coefficient * power as f64)
 }
 
-/// The derivative series of a result with respect to a node. Coefficients from `length` on are zero.
+/// Derivative series of a result with respect to a node. Coefficients from `length` on are zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Adjoint {
     pub(super) length: usize,

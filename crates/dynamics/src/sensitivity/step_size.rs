@@ -1,4 +1,4 @@
-//! How far a step by Taylor series reaches.
+//! Size of a step by Taylor series.
 
 use super::graph::MOST_STATES;
 use super::march::March;
@@ -6,15 +6,15 @@ use super::series::{Series, head, slope, value};
 use crate::field::State;
 use crate::system::ROUNDING;
 
-/// Parts of a step at which its defect is looked at.
+/// Parts of a step at which its defect is evaluated.
 const PARTS: [f64; 2] = [1.0, 0.6];
 
-/// Largest defect of a step in units of the tolerance: what the first neglected term brings, times the degree.
+/// Largest defect of a step in units of the tolerance: that of the first neglected term, times the degree.
 const MOST_DEFECT: f64 = 20.0;
 
 impl March<'_> {
-    /// The largest step for which the last two coefficients of every series are below the tolerance, and
-    /// those behind them fall off.
+    /// Returns the largest step for which the last two coefficients of every series are below the tolerance
+    /// and the terms fall off toward the end.
     pub(super) fn step_size(&self, series: &[Series; MOST_STATES], degree: usize, number: usize) -> f64 {
         let mut tails = Tails::default();
         for (series, &scale) in series.iter().zip(&self.scale).take(self.model.states) {
@@ -23,7 +23,7 @@ impl March<'_> {
         if self.mode.sticks()
             && let Some(piece) = self.model.graphs.get(number)
         {
-            // Nothing moves but the torque: the step has to resolve it, or a break-away is missed.
+            // Nothing changes but the torque: the step has to resolve it, or a break-away is missed.
             let holding = self.model.field.holding_torque().unwrap_or(1.0).abs();
             for (_, node) in &piece.graph.edges {
                 tails.take(piece.graph.series(*node), degree, holding);
@@ -32,8 +32,8 @@ impl March<'_> {
         tails.step_size(degree, self.model.settings.tolerance)
     }
 
-    /// The size that errors of a variable are measured by: its largest so far, or, where it has not moved yet, how
-    /// far its first terms take it.
+    /// Returns the size that errors of a variable are compared with: its largest so far or, if it has not
+    /// moved yet, its motion by the first terms.
     fn reach(&self, series: &Series, scale: f64) -> f64 {
         let [_, first, second, third, ..] = series;
         let time = self.size;
@@ -44,7 +44,7 @@ impl March<'_> {
         if reach > 0.0 { reach } else { first_term(series, time) }
     }
 
-    /// Where the series get to in a time.
+    /// Returns the state that the series reach in a time.
     fn reached(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> State<f64> {
         let mut end = [0.0; MOST_STATES];
         for (slot, series) in end.iter_mut().zip(series).take(self.model.states) {
@@ -56,9 +56,9 @@ impl March<'_> {
         State { time, position, velocity, hidden, input }
     }
 
-    /// By how much the series at the end of a step fails the equation of motion, over the step, in units of the
-    /// tolerance. The coefficients alone do not betray a narrow peak ahead; this does. `known` is what the rates may
-    /// be off by anyway.
+    /// Returns the defect of the equation of motion at the end of a step, over the step, in units of the
+    /// tolerance. It detects a narrow peak ahead, which the coefficients alone do not show. `known` is the
+    /// error that the rates may have anyway.
     fn defect(
         &self,
         series: &[Series; MOST_STATES],
@@ -79,7 +79,7 @@ impl March<'_> {
             .fold(0.0, |largest: f64, part| if part.is_finite() { largest.max(part) } else { f64::INFINITY })
     }
 
-    /// How much of each rate of the state may be rounding.
+    /// Returns the part of each rate of the state that may be rounding.
     #[cold]
     fn rounding(&self, point: &State<f64>) -> [f64; MOST_STATES] {
         let point = point.over();
@@ -92,15 +92,15 @@ impl March<'_> {
         errors
     }
 
-    /// Returns whether the equation of motion fails in a time by more than the tolerance and rounding allow. Where torques
-    /// cancel, what is left of them is rounding, and no step is short enough for it.
+    /// Returns `true` if the defect of the equation of motion in a time exceeds what tolerance and rounding
+    /// allow. If torques cancel, their remainder is rounding, and no step is short enough for it.
     fn fails(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> bool {
         let end = self.reached(series, degree, size);
         self.defect(series, degree, size, &end, &[0.0; MOST_STATES]) > MOST_DEFECT
             && self.defect(series, degree, size, &end, &self.rounding(&end)) > MOST_DEFECT
     }
 
-    /// A step shortened until the equation of motion holds along it.
+    /// Returns a step shortened until the equation of motion holds along it.
     pub(super) fn without_defect(&self, series: &[Series; MOST_STATES], degree: usize, mut size: f64) -> f64 {
         while size > f64::EPSILON * self.time.abs()
             && PARTS.into_iter().any(|part| self.fails(series, degree, part * size))
@@ -111,17 +111,17 @@ impl March<'_> {
     }
 }
 
-/// How far the first term that is not zero takes a variable. Behind a soft coupling a ramp of the torque is felt in
-/// the fourth or the fifth only.
+/// Returns the distance that the first nonzero term moves a variable. Behind a soft coupling a ramp of the
+/// torque shows only in the fourth or the fifth term.
 #[cold]
 fn first_term(series: &Series, time: f64) -> f64 {
     let mut terms =
         series.iter().zip(0_i32..).map(|(coefficient, degree)| coefficient.abs() * time.powi(degree));
-    // Where every term is zero the variable stays where it is.
+    // If every term is zero, the variable stays in place.
     terms.find(|term| *term > 0.0).unwrap_or(0.0)
 }
 
-/// The largest of the last coefficients of several series, the highest degree first, each relative to its scale.
+/// Largest of the last coefficients of several series, the highest degree first, each relative to its scale.
 #[derive(Debug, Default)]
 struct Tails([f64; 4]);
 
@@ -130,7 +130,7 @@ impl Tails {
         let last = head(series, degree + 1).iter().rev();
         for (largest, coefficient) in self.0.iter_mut().zip(last) {
             let part = coefficient.abs() / scale.max(f64::MIN_POSITIVE);
-            // `max` passes over what is not a number.
+            // `max` ignores NaN.
             *largest = if part.is_finite() { largest.max(part) } else { f64::INFINITY };
         }
     }
@@ -145,7 +145,7 @@ impl Tails {
             }
         };
         let size = root(last, degree).min(root(second, degree - 1));
-        // Small last terms do not bound the rest where terms still grow with the degree, as before a narrow
+        // Small last terms do not bound the rest if terms still grow with the degree, as before a narrow
         // peak: two degrees have to gain a factor of four.
         let (late, early) = (last * size + second, third * size + fourth);
         let growth = late * size * size / early.max(f64::MIN_POSITIVE);

@@ -31,7 +31,7 @@ fn trajectories_are_the_references_for_every_effect() {
     }
 }
 
-/// What is not asked for is not written, and changes nothing else.
+/// Outputs that are not requested are not written, and their absence changes nothing else.
 #[test]
 fn sensitivities_of_rates_are_left_out_on_request() {
     let system = system(&[("coulomb_friction", &[0.5])]);
@@ -88,8 +88,8 @@ fn moved(system: &System, start: Start, free: Free, by: f64) -> (System, Start) 
     (System::new(nominal, effects).unwrap(), start)
 }
 
-/// The size of an effect's parameter; other quantities may be moved as far as one likes, but for the gain: a
-/// held input passes the edge of saturation at once.
+/// The size of an effect's parameter. Other quantities may be moved by any amount, except the gain: a held
+/// input passes the edge of saturation at once.
 fn size(system: &System, free: Free) -> f64 {
     if free == Free::InputGain {
         return 0.1;
@@ -132,8 +132,8 @@ struct Case<'a> {
 }
 
 /// Compares every column of position, velocity and acceleration with differences of the model itself and of
-/// the reference. Samples at which an event passes while a quantity is moved are left out: the motion has a
-/// kink there. `reach` is how far, in rad, a quantity may move the motion.
+/// the reference. Samples that an event passes while a quantity is moved are left out: the motion has a kink
+/// there. `reach` is how far, in rad, a quantity may move the motion.
 fn check_columns(case: &Case<'_>, reach: f64, bar: f64) {
     let Case { name, system, start, input, times } = *case;
     let free = everything_free(system);
@@ -183,7 +183,8 @@ fn check_columns(case: &Case<'_>, reach: f64, bar: f64) {
             });
             relative.fold(0.0, f64::max)
         };
-        // A long step is clear of rounding, a short one of curvature; neither can make a wrong column right.
+        // A long step is free of rounding, a short one of curvature; neither can make a wrong column look
+        // right.
         let steps = [0.02, 0.002].map(|part| (reach / largest(&own[0])).min(part * size(system, *quantity)));
         for (what, at) in [("itself", &itself as &dyn Fn(f64) -> Vec<f64>), ("the reference", &reference)] {
             let found: Vec<f64> =
@@ -317,7 +318,7 @@ fn new_values_are_as_a_new_model() {
     let other = with(other, &[("quadratic_drag", &[0.02])]);
     let fresh = Model::new(&other, &free, Settings::default()).unwrap().run(start, None, &times).unwrap();
     assert_eq!(response, fresh);
-    // A coefficient of the wrong sign is a finding of a fit, no error.
+    // A coefficient of the wrong sign is a finding of a fit, not an error.
     model.set(&[500.0, -0.02]).unwrap();
     model.run_into(start, None, &times, &mut response).unwrap();
     assert!(response.position.iter().all(|position| position.is_finite()));
@@ -349,7 +350,8 @@ fn what_cannot_be_free_is_named() {
 
 #[test]
 fn the_series_has_the_order_of_its_degree() {
-    // A swinging pendulum with damping, in steps of one size: with a tolerance this wide nothing else cuts them.
+    // A swinging pendulum with damping, in steps of one size: with so wide a tolerance nothing else cuts
+    // them.
     let nominal = Nominal::new(1.0, 0.3, 2.0, 0.1).unwrap();
     let system = with(nominal, &[("gravity", &[9.0, 0.2]), ("cubic_stiffness", &[1.5])]);
     let start = Start { position: 1.2, velocity: 0.5 };

@@ -1,12 +1,12 @@
-//! The null estimator: no decay at all. The floor row of every table and the file a new author copies.
+//! Null estimator: no decay at all. It is the floor row of every table, and a template for new estimators.
 //!
-//! It answers λ = 0 and the mean of ln A, whatever the envelope. An estimator that does not beat it has
-//! learned nothing.
+//! It returns λ = 0 and the mean of ln A for every envelope. An estimator that does not beat it has learned
+//! nothing.
 
 use envelope::Envelope;
 use estimator::{Entry, Estimate, Estimator, FitContext, FitError, Prediction, Reached, Stop, Tag};
 
-/// The registry's line.
+/// Registry entry of the null estimator.
 pub const ENTRY: Entry = Entry {
     id: "baseline",
     paper_number: None,
@@ -18,7 +18,7 @@ pub const ENTRY: Entry = Entry {
     build: |_settings| Ok(Box::new(Baseline)),
 };
 
-/// The null estimator. It has no settings.
+/// Null estimator. It has no settings.
 #[derive(Debug, Clone, Copy)]
 pub struct Baseline;
 
@@ -27,7 +27,7 @@ impl Estimator for Baseline {
         let logs = envelope.log_amplitudes();
         let count = logs.len() as f64;
         let mean = logs.iter().sum::<f64>() / count;
-        // A measured peak scatters about the mean as the others do, and the mean is not known exactly.
+        // A measured peak scatters about the mean like the others, and the mean is not known exactly.
         let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0);
         let std_error = (variance * (1.0 + 1.0 / count)).sqrt();
         let prediction = Prediction::new(mean, Some(std_error));
@@ -62,7 +62,7 @@ mod tests {
         let estimate = Baseline.fit(&envelope, &context).unwrap();
         assert_eq!(estimate.decay_rate.to_bits(), 0.0_f64.to_bits());
         assert!((estimate.log_amplitude - 2.0).abs() < 1e-15);
-        // The standard deviation of 3, 2, 1 is 1, and √(1 + 1/3) of it about their mean.
+        // The standard deviation of 3, 2, 1 is 1; about their mean a new value has √(1 + 1/3) of it.
         assert_eq!(estimate.predictions.len(), 2);
         for prediction in estimate.predictions {
             assert!((prediction.log_amplitude - 2.0).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! A chain: warm-up, then draws.
+//! Markov chain: warm-up, then draws.
 //!
 //! Reference: Hoffman, Gelman, J. Mach. Learn. Res. 15 (2014) 1593, algorithm 6, for the step size; the
 //! Stan Reference Manual, section "HMC algorithm parameters", for the windows of the warm-up.
@@ -7,18 +7,18 @@ use crate::nuts::{LogDensity, Metric, Point, Trajectory, reasonable_step_size};
 use nalgebra::{Matrix3, Vector3};
 use rand::Rng;
 
-/// Settings that every chain shares.
+/// Settings that all chains share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tuning {
-    /// Transitions that tune step size and metric and are thrown away.
+    /// Number of warm-up transitions, which tune step size and metric and are discarded.
     pub(crate) warm_up: u64,
-    /// Acceptance that the step size is tuned for.
+    /// Acceptance probability that the step size is tuned for.
     pub(crate) target_acceptance: f64,
     /// Most doublings of a trajectory.
     pub(crate) deepest: u32,
 }
 
-/// One chain in progress.
+/// Chain in progress.
 pub(crate) struct Chain<'a, D, G> {
     density: &'a D,
     generator: G,
@@ -30,12 +30,12 @@ pub(crate) struct Chain<'a, D, G> {
     point: Point,
     /// Draws after the warm-up.
     pub(crate) draws: Vec<Point>,
-    /// Transitions after the warm-up whose energy ran away.
+    /// Number of divergent transitions after the warm-up.
     pub(crate) divergences: u64,
 }
 
 impl<'a, D: LogDensity, G: Rng> Chain<'a, D, G> {
-    /// A chain at its start.
+    /// Creates a chain at its start.
     pub(crate) fn new(density: &'a D, start: Vector3<f64>, tuning: Tuning, mut generator: G) -> Self {
         let point = density.at(start);
         let metric = Metric::identity();
@@ -54,12 +54,12 @@ impl<'a, D: LogDensity, G: Rng> Chain<'a, D, G> {
         }
     }
 
-    /// Where the chain is.
+    /// Returns the current point of the chain.
     pub(crate) fn point(&self) -> &Point {
         &self.point
     }
 
-    /// Takes one transition: of the warm-up while that lasts, then a draw.
+    /// Takes one transition: of the warm-up while that lasts, otherwise a draw.
     pub(crate) fn step(&mut self) {
         let warming = self.taken < self.tuning.warm_up;
         let step_size = if warming { self.step_size.current() } else { self.step_size.settled() };
@@ -88,7 +88,7 @@ impl<'a, D: LogDensity, G: Rng> Chain<'a, D, G> {
             Phase::Collecting => self.window.add(&self.point.position),
             Phase::EndOfWindow => {
                 self.window.add(&self.point.position);
-                // A window in which the chain stood still teaches nothing: the old metric stays.
+                // A window in which the chain did not move gives no metric: the old one stays.
                 if let Some(metric) = self.window.metric() {
                     self.metric = metric;
                 }
@@ -106,7 +106,7 @@ impl<'a, D: LogDensity, G: Rng> Chain<'a, D, G> {
     }
 }
 
-/// What a transition of the warm-up serves for.
+/// Purpose of a warm-up transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     StepSizeOnly,
@@ -114,8 +114,9 @@ enum Phase {
     EndOfWindow,
 }
 
-/// The windows of a warm-up of 500: 75 transitions to arrive, windows of 25, 50, 100 and 200 for the
-/// metric, 50 for the last step size. A longer or shorter warm-up is cut in the same proportions.
+/// Returns the purpose of a warm-up transition. A warm-up of 500 has 75 transitions to reach the posterior,
+/// windows of 25, 50, 100 and 200 for the metric, and 50 transitions for the final step size. Other lengths
+/// are divided in the same proportions.
 fn phase(at: u64, warm_up: u64) -> Phase {
     const ENDS: [u64; 4] = [100, 150, 250, 450];
     let scaled = |mark: u64| mark * warm_up / 500;
@@ -128,7 +129,7 @@ fn phase(at: u64, warm_up: u64) -> Phase {
     }
 }
 
-/// The step size by dual averaging: Hoffman, Gelman (2014), equation 6 and their γ, t₀ and κ.
+/// Step size by dual averaging: Hoffman, Gelman (2014), equation 6, with their γ, t₀ and κ.
 #[derive(Debug, Clone, Copy)]
 struct DualAveraging {
     target: f64,
@@ -189,8 +190,8 @@ impl Moments {
         self.products += before * (position - self.mean).transpose();
     }
 
-    /// The covariance, its correlations shrunk by 5/(n + 5) as Stan shrinks its own, but toward the
-    /// covariance's own diagonal: a fixed one would drown a posterior that is narrower.
+    /// Returns the covariance with its correlations shrunk by 5/(n + 5). Stan shrinks toward a fixed
+    /// diagonal, which would dominate a narrow posterior; here it is the covariance's own diagonal.
     fn metric(&self) -> Option<Metric> {
         if self.count < 2.0 {
             return None;
@@ -225,7 +226,7 @@ mod tests {
         assert!((moments.products[(0, 1)] - 1.0).abs() < 1e-14);
     }
 
-    /// Three scales, six decades apart.
+    /// Normal density with three scales, three decades apart each.
     struct Scales;
 
     impl LogDensity for Scales {

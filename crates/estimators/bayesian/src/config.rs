@@ -1,48 +1,48 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
 
-/// What gives λ.
+/// Method that gives λ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// The posterior mean in closed form.
+    /// Posterior mean in closed form.
     Conjugate,
-    /// The mean of the no-U-turn sampler's draws.
+    /// Mean of the no-U-turn sampler's draws.
     Nuts,
 }
 
 /// Settings of the Bayesian regression. The ranges and defaults are in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct BayesianConfig {
-    /// What gives λ.
+    /// Method that gives λ.
     pub method: Method,
-    /// κ: prior standard deviation of ln A₀ and λ, in units of the scatter.
+    /// Prior width κ: standard deviation of ln A₀ and λ, in units of the scatter.
     pub prior_width: f64,
-    /// a₀: shape of the prior of the scatter's variance.
+    /// Shape a₀ of the prior of the scatter's variance.
     pub prior_noise_shape: f64,
-    /// b₀: rate of the prior of the scatter's variance, in units of the variance of ln A.
+    /// Rate b₀ of the prior of the scatter's variance, in units of the variance of ln A.
     pub prior_noise_rate: f64,
-    /// Whether the sampler checks the closed form.
+    /// `true` if the sampler checks the closed form.
     pub check_by_sampling: bool,
     /// Number of chains.
     pub chains: usize,
-    /// Transitions of each chain that tune the sampler and are thrown away.
+    /// Warm-up transitions of each chain, which tune the sampler and are discarded.
     pub warm_up: u64,
-    /// Draws of each chain after that.
+    /// Draws of each chain after the warm-up.
     pub draws: u64,
-    /// Acceptance that the step size is tuned for.
+    /// Acceptance probability that the step size is tuned for.
     pub target_acceptance: f64,
     /// Most doublings of a trajectory.
     pub deepest_tree: u32,
-    /// Fewest effective draws, bulk and tail, for the sampler to have converged.
+    /// Fewest effective draws, bulk and tail, with which the sampler has converged.
     pub least_effective_draws: f64,
-    /// Half the width of the interval the chains' starts are drawn from, in scaled units.
+    /// Half-width of the interval that the chains' starts are drawn from, in scaled units.
     pub initial_scale: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "method",

@@ -1,4 +1,4 @@
-//! Whether chains agree, and how many independent draws theirs are worth.
+//! Convergence diagnostics: agreement of chains, and effective number of independent draws.
 //!
 //! Reference: Vehtari, Gelman, Simpson, Carpenter, Bürkner, Bayesian Anal. 16 (2021) 667.
 
@@ -7,18 +7,18 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// Diagnostics of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Diagnostics {
-    /// Rank-normalized split R̂, the larger of that of the draws and that of their distances from the
+    /// Rank-normalized split R̂: the larger one of the R̂ of the draws and the R̂ of their distances from the
     /// median.
     pub(crate) r_hat: f64,
-    /// Bulk effective sample size: what the draws are worth for the center.
+    /// Bulk effective sample size, which applies to the center.
     pub(crate) bulk: f64,
-    /// Tail effective sample size: the smaller worth for the 5 % and the 95 % quantile.
+    /// Tail effective sample size: the smaller one of those for the 5 % and the 95 % quantile.
     pub(crate) tail: f64,
 }
 
 impl Diagnostics {
-    /// Of chains of equally many draws, at least four each; without so many everything is unknown: R̂
-    /// infinite, no effective draws.
+    /// Computes the diagnostics of chains of equal length. With fewer than four draws each they are unknown:
+    /// R̂ is infinite, and there are no effective draws.
     pub(crate) fn of(chains: &[Vec<f64>]) -> Self {
         let split = split(chains);
         // Without chains there is no draw.
@@ -42,7 +42,7 @@ impl Diagnostics {
     }
 }
 
-/// Every chain in halves; the middle draw of an odd number is left out.
+/// Splits every chain into halves; the middle draw of an odd number is left out.
 pub(crate) fn split(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     chains
         .iter()
@@ -59,7 +59,7 @@ fn map(chains: &[Vec<f64>], by: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
     chains.iter().map(|chain| chain.iter().map(|&draw| by(draw)).collect()).collect()
 }
 
-/// The quantile by linear interpolation between the order statistics (Hyndman and Fan's type 7).
+/// Returns the quantile by linear interpolation between the order statistics (type 7 of Hyndman and Fan).
 pub(crate) fn quantile(draws: &[f64], share: f64) -> f64 {
     let mut sorted = draws.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -69,7 +69,8 @@ pub(crate) fn quantile(draws: &[f64], share: f64) -> f64 {
     below + (above - below) * place.fract()
 }
 
-/// z = Φ⁻¹((rank − 3/8)/(S + 1/4)) over all chains together, ties by their mean rank: equation 14.
+/// Returns z = Φ⁻¹((rank − 3/8)/(S + 1/4)) over all chains together, with the mean rank for ties: equation
+/// 14.
 fn rank_normalized(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut order: Vec<(f64, usize)> =
         chains.iter().flatten().enumerate().map(|(place, &draw)| (draw, place)).collect();
@@ -102,7 +103,7 @@ fn variance(values: &[f64]) -> f64 {
     values.iter().map(|value| (value - center).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)
 }
 
-/// Within-chain variance and the pooled estimate: equations 1 to 3.
+/// Returns the within-chain variance and the pooled estimate: equations 1 to 3.
 fn variances(chains: &[Vec<f64>]) -> (f64, f64) {
     // Without chains there is no draw.
     let length = chains.first().map_or(0, Vec::len) as f64;
@@ -111,14 +112,14 @@ fn variances(chains: &[Vec<f64>]) -> (f64, f64) {
     (within, (length - 1.0) / length * within + variance(&means))
 }
 
-/// √(pooled/within): equation 4. Infinite for chains that stand still.
+/// Returns √(pooled/within): equation 4. Infinite for chains that do not move.
 fn r_hat(chains: &[Vec<f64>]) -> f64 {
     let (within, pooled) = variances(chains);
     if within > 0.0 { (pooled / within).sqrt() } else { f64::INFINITY }
 }
 
-/// Number of draws over the integrated autocorrelation time, the autocorrelations summed while their
-/// pairs stay positive and made to fall (Geyer): equations 10 to 13.
+/// Returns the number of draws over the integrated autocorrelation time. Pairs of autocorrelations are summed
+/// while they stay positive, and are forced to decrease (Geyer): equations 10 to 13.
 pub(crate) fn effective_draws(chains: &[Vec<f64>]) -> f64 {
     // Without chains there is no draw.
     let length = chains.first().map_or(0, Vec::len);
@@ -146,14 +147,14 @@ pub(crate) fn effective_draws(chains: &[Vec<f64>]) -> f64 {
         let even = if lag == 0 { 1.0 } else { correlation(lag) };
         let pair = even + correlation(lag + 1);
         if pair <= 0.0 {
-            // The even one alone still counts where it is positive.
+            // The even lag still counts by itself if it is positive.
             time += even.max(0.0);
             break;
         }
         last_pair = pair.min(last_pair);
         time += 2.0 * last_pair;
     }
-    // Antithetic chains may be worth more than their draws, within reason.
+    // Antithetic chains may have more effective draws than draws, within a limit.
     total / time.max(1.0 / total.log10())
 }
 
@@ -184,7 +185,7 @@ mod tests {
 
     #[test]
     fn an_autoregression_is_worth_what_theory_says() {
-        // Integrated autocorrelation time (1 + φ)/(1 − φ).
+        // The integrated autocorrelation time is (1 + φ)/(1 − φ).
         for correlation in [-0.3, 0.0, 0.5, 0.9] {
             let found = Diagnostics::of(&chains(correlation, &[0.0; 4], 5000));
             let theory = 20_000.0 * (1.0 - correlation) / (1.0 + correlation);
@@ -219,9 +220,9 @@ mod tests {
     #[test]
     fn ranks_halves_and_quantiles() {
         let scores = rank_normalized(&[vec![5.0, 1.0], vec![1.0, 9.0]]);
-        // Ranks 3, 1.5, 1.5, 4 of 4: the tied two share a score.
+        // Ranks 3, 1.5, 1.5, 4 of 4: the two ties share a score.
         assert!((scores[0][1] - scores[1][0]).abs() < 1e-15);
-        // The quantile of (3 − 3/8)/(4 + 1/4).
+        // Normal quantile at (3 − 3/8)/(4 + 1/4).
         assert!((scores[0][0] - 0.299_307).abs() < 1e-6, "{}", scores[0][0]);
         assert_eq!(split(&[vec![1.0, 2.0, 3.0, 4.0, 5.0]]), [vec![1.0, 2.0], vec![4.0, 5.0]]);
         assert!((quantile(&[4.0, 1.0, 2.0, 3.0], 0.5) - 2.5).abs() < 1e-15);

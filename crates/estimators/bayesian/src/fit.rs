@@ -1,4 +1,4 @@
-//! The fit.
+//! Fit by closed form and by sampling.
 
 use crate::config::{BayesianConfig, Method};
 use crate::model::{Conjugate, Model, Prior, Statistics};
@@ -10,12 +10,12 @@ use estimator::{
 };
 use nalgebra::Vector3;
 
-/// Fewest peaks to sample from: with fewer, the posterior has no fourth moment, and the Monte-Carlo error
-/// of a variance no meaning.
+/// Fewest peaks for sampling. With fewer, the posterior has no fourth moment, and the Monte-Carlo error of a
+/// variance is undefined.
 const FEWEST_SAMPLED: usize = 7;
 
-/// A closed form farther than this from the sampler's mean, in Monte-Carlo standard errors, is at odds
-/// with it: once in two million fits by chance.
+/// Distance of the closed form from the sampler's mean, in Monte-Carlo standard errors, above which they
+/// disagree: by chance once in two million fits.
 const AT_ODDS: f64 = 5.0;
 
 impl Estimator for BayesianConfig {
@@ -36,7 +36,7 @@ impl Estimator for BayesianConfig {
     }
 }
 
-/// A fit in progress.
+/// Fit in progress.
 struct Fit<'a> {
     config: &'a BayesianConfig,
     envelope: &'a Envelope,
@@ -45,13 +45,13 @@ struct Fit<'a> {
     model: Model,
 }
 
-/// What either way finds, in scaled units but for the interval.
+/// Result of either method, in scaled units except for the interval.
 struct Found {
     start: f64,
     rate: f64,
     scatter: f64,
     uncertainty: Option<Uncertainty>,
-    /// Times asked about, τ, and the predictive standard deviation at each.
+    /// Query times τ, with the predictive standard deviation at each.
     asked: Vec<(f64, Option<f64>)>,
     stop: Stop,
     steps: u64,
@@ -77,7 +77,7 @@ impl Fit<'_> {
         self.describe(Found { start, rate, scatter, uncertainty, asked, stop, steps: 0, remarks })
     }
 
-    /// What the sampler says of the closed form, in a sentence.
+    /// Checks the closed form by sampling; returns the result as a sentence.
     fn check(&self, posterior: &Conjugate, context: &FitContext<'_>) -> String {
         if !self.config.check_by_sampling {
             return "the posterior is known in closed form; not checked by sampling".to_owned();
@@ -172,7 +172,7 @@ impl Fit<'_> {
         self.describe(Found { start, rate, scatter, uncertainty, asked, stop, steps, remarks })
     }
 
-    /// The times asked about, τ, with what is known of a new value there.
+    /// Returns the query times τ, with the predictive standard deviation at each.
     fn asked(
         &self,
         context: &FitContext<'_>,
@@ -182,7 +182,7 @@ impl Fit<'_> {
         times.map(|time| (time, deviation(time))).collect()
     }
 
-    /// Why a sample is not enough, and what to do.
+    /// Returns the reason why a sample is insufficient, with advice.
     fn shortfall(&self, sample: &Sample) -> String {
         if sample.is_empty() {
             return format!(

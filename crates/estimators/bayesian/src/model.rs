@@ -1,35 +1,35 @@
-//! The model: a line with Gaussian scatter, its prior, and the posterior in closed form.
+//! Line with Gaussian scatter: its prior, and its posterior in closed form.
 
 use crate::nuts::{LogDensity, Point};
 use nalgebra::Vector3;
 
-/// The prior of (u, r, σ²), the value at the first peak, the decay rate and the variance of the scatter in
-/// scaled units: (u, r) given σ² normal about zero with variance κ²σ² each and independent, σ²
+/// Prior of (u, r, σ²): the value at the first peak, the decay rate and the variance of the scatter, in
+/// scaled units. Given σ², u and r are independent and normal about zero with variance κ²σ² each; σ² is
 /// inverse-gamma with shape a₀ and rate b₀.
 ///
-/// Shape −1 and rate 0 make it improper in σ². A normal prior whose width goes with σ carries a factor 1/σ
-/// for either coefficient; shape −1 takes the two back, so that for large κ the posterior is that of the
-/// reference prior p(u, r, σ²) ∝ 1/σ², whose intervals cover as often as they say.
+/// With shape −1 and rate 0 it is improper in σ². A normal prior whose width is proportional to σ contributes
+/// a factor 1/σ for either coefficient, and shape −1 cancels both. So for large κ the posterior is that of
+/// the reference prior p(u, r, σ²) ∝ 1/σ², whose intervals have the stated coverage.
 ///
 /// Reference: Gelman, Carlin, Stern, Dunson, Vehtari, Rubin, Bayesian Data Analysis, 3rd ed. (2013),
 /// sections 3.3, 14.2 and 14.8.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prior {
-    /// κ: standard deviation of u and r in units of σ.
+    /// Width κ: standard deviation of u and r in units of σ.
     pub(crate) width: f64,
-    /// a₀.
+    /// Shape a₀.
     pub(crate) noise_shape: f64,
-    /// b₀, in scaled units squared.
+    /// Rate b₀, in scaled units squared.
     pub(crate) noise_rate: f64,
 }
 
-/// What the likelihood needs of the data: the triangular factor of the columns 1, −τ, z. With it the sum
-/// of squares is
+/// Sufficient statistics of the data: the triangular factor of the columns 1, −τ, z. With it the sum of
+/// squares is
 ///
 /// D(u, r) = (y₁ − c₁₁u − c₁₂r)² + (y₂ − c₂₂r)² + y₃²
 ///
-/// for any number of peaks, without the cancellation that sums of products would suffer where there is
-/// little scatter.
+/// for any number of peaks, without the cancellation that sums of products would suffer if there is little
+/// scatter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Statistics {
     count: f64,
@@ -42,7 +42,7 @@ pub(crate) struct Statistics {
 }
 
 impl Statistics {
-    /// Reduces times τ and values z, equally many, by the modified Gram–Schmidt method.
+    /// Reduces times τ and values z, of equal number, by the modified Gram–Schmidt method.
     pub(crate) fn new(times: &[f64], values: &[f64]) -> Self {
         let count = times.len() as f64;
         let c11 = count.sqrt();
@@ -56,7 +56,7 @@ impl Statistics {
         Self { count, c11, c12: -mean_time * c11, c22, y1: mean_value * c11, y2, y3 }
     }
 
-    /// Of V⁻¹ = XᵀX + `precision`.
+    /// Returns the determinant of V⁻¹ = XᵀX + `precision`.
     fn determinant(&self, precision: f64) -> f64 {
         let Self { c11, c12, c22, .. } = *self;
         (c11 * c22).powi(2) + precision * (c11 * c11 + c12 * c12 + c22 * c22) + precision * precision
@@ -71,8 +71,8 @@ pub(crate) struct Model {
 }
 
 impl LogDensity for Model {
-    /// −(N + 2 + 2a₀)·ℓ − e^(−2ℓ)·(b₀ + ½·D(u, r) + ½·(u² + r²)/κ²), up to a constant; the Jacobian of
-    /// σ² to ℓ is in it.
+    /// Evaluates −(N + 2 + 2a₀)·ℓ − e^(−2ℓ)·(b₀ + ½·D(u, r) + ½·(u² + r²)/κ²), up to a constant, including
+    /// the Jacobian of the change from σ² to ℓ.
     fn at(&self, position: Vector3<f64>) -> Point {
         let Statistics { count, c11, c12, c22, y1, y2, y3 } = self.statistics;
         let Prior { width, noise_shape, noise_rate } = self.prior;
@@ -95,8 +95,8 @@ impl LogDensity for Model {
     }
 }
 
-/// The posterior in closed form: (u, r) given σ² normal about `mean` with covariance σ²·V, σ²
-/// inverse-gamma; so r alone is Student's t.
+/// Posterior in closed form. Given σ², (u, r) is normal about `mean` with covariance σ²·V; σ² is
+/// inverse-gamma. So r alone has Student's t distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Conjugate {
     /// Posterior mean of u, the value at the first peak.
@@ -105,24 +105,24 @@ pub(crate) struct Conjugate {
     pub(crate) rate: f64,
     /// Scale of the Student's t of r, √(b/a · V_rr).
     pub(crate) rate_scale: f64,
-    /// Its degrees of freedom, 2a = N + 2a₀.
+    /// Degrees of freedom of that distribution, 2a = N + 2a₀.
     pub(crate) degrees_of_freedom: f64,
-    /// √(b/a): the scatter's standard deviation.
+    /// Standard deviation of the scatter, √(b/a).
     pub(crate) scatter: f64,
     statistics: Statistics,
-    /// 1/κ².
+    /// Prior precision 1/κ².
     precision: f64,
 }
 
 impl Conjugate {
-    /// Standard deviation of a new value at a time τ. It is Student's t about u − rτ with the scale
-    /// √(b/a · (1 + xᵀVx)), x = (1, −τ); its standard deviation is √(ν/(ν − 2)) of that, and there is none
-    /// for ν ≤ 2 degrees of freedom.
+    /// Returns the standard deviation of a new value at a time τ. The new value has Student's t distribution
+    /// about u − rτ with the scale √(b/a · (1 + xᵀVx)), x = (1, −τ). Its standard deviation is √(ν/(ν − 2))
+    /// times the scale; `None` for ν ≤ 2 degrees of freedom.
     ///
     /// Reference: Gelman et al. (2013), section 14.3.
     pub(crate) fn predictive_deviation(&self, time: f64) -> Option<f64> {
         let Statistics { c11, c12, c22, .. } = self.statistics;
-        // xᵀVx as a sum of squares.
+        // The form xᵀVx as a sum of squares.
         let leverage = (c11 * time + c12).powi(2) + c22 * c22 + self.precision * (1.0 + time * time);
         let share = leverage / self.statistics.determinant(self.precision);
         let freedom = self.degrees_of_freedom;
@@ -131,14 +131,14 @@ impl Conjugate {
 }
 
 impl Model {
-    /// V⁻¹ = XᵀX + 1/κ², mean = V·Xᵀz, a = a₀ + N/2, b = b₀ + ½·(‖z − X·mean‖² + ‖mean‖²/κ²), where X
-    /// has the columns 1 and −τ.
+    /// Computes V⁻¹ = XᵀX + 1/κ², mean = V·Xᵀz, a = a₀ + N/2 and b = b₀ + ½·(‖z − X·mean‖² + ‖mean‖²/κ²),
+    /// where X has the columns 1 and −τ.
     ///
-    /// Reference: Gelman et al. (2013), section 14.8; b in the form that does not cancel.
+    /// Reference: Gelman et al. (2013), section 14.8; b is in the form without cancellation.
     pub(crate) fn conjugate(&self) -> Conjugate {
         let Statistics { count, c11, c12, c22, y1, y2, .. } = self.statistics;
         let precision = 1.0 / (self.prior.width * self.prior.width);
-        // The two-by-two system written out, the terms that cancel taken away by hand.
+        // The two-by-two system is written out, and the terms that cancel are removed analytically.
         let determinant = self.statistics.determinant(precision);
         let start = c11 * (c22 * (c22 * y1 - c12 * y2) + precision * y1) / determinant;
         let rate = (c11 * c11 * c22 * y2 + precision * (c12 * y1 + c22 * y2)) / determinant;
@@ -156,7 +156,7 @@ impl Model {
         }
     }
 
-    /// b₀ + ½·(D(u, r) + (u² + r²)/κ²).
+    /// Returns b₀ + ½·(D(u, r) + (u² + r²)/κ²).
     fn misfit(&self, u: f64, r: f64) -> f64 {
         let Statistics { c11, c12, c22, y1, y2, y3, .. } = self.statistics;
         let squares = (y1 - c11 * u - c12 * r).powi(2) + (y2 - c22 * r).powi(2) + y3 * y3;
@@ -177,10 +177,11 @@ mod tests {
         Model { prior, statistics: Statistics::new(&TIMES, &VALUES) }
     }
 
-    /// Tight enough for the prior to show.
+    /// Prior that is narrow enough to have an effect.
     const TIGHT: Prior = Prior { width: 2.0, noise_shape: 1.5, noise_rate: 0.3 };
 
-    /// The log posterior from its definition: scatter, coefficients' prior, inverse-gamma, Jacobian.
+    /// Computes the log posterior from its definition: scatter, prior of the coefficients, inverse-gamma,
+    /// Jacobian.
     fn by_definition(prior: Prior, u: f64, r: f64, log_sigma: f64) -> f64 {
         let normal = |x: f64, sd: f64| -0.5 * (x / sd).powi(2) - sd.ln();
         let sigma = log_sigma.exp();
@@ -220,7 +221,7 @@ mod tests {
         let covariance = precision.clone().try_inverse().unwrap();
         let mean = &covariance * x.tr_mul(&z);
         let shape = TIGHT.noise_shape + 3.0;
-        // The textbook's form of b, not ours.
+        // The textbook's form of b, which differs from ours.
         let rate = TIGHT.noise_rate + 0.5 * (z.norm_squared() - mean.dot(&(&precision * &mean)));
         let found = model(TIGHT).conjugate();
         assert!((found.start - mean[0]).abs() < 1e-13);
@@ -238,7 +239,7 @@ mod tests {
         for time in [-0.5, 0.0, 0.4, 3.0] {
             let x = DVector::from_vec(vec![1.0, -time]);
             let scale = posterior.scatter * (1.0 + x.dot(&(&covariance * &x))).sqrt();
-            // 2a = 6 + 2·1.5 = 9 degrees of freedom.
+            // There are 2a = 6 + 2·1.5 = 9 degrees of freedom.
             let expected = scale * (9.0_f64 / 7.0).sqrt();
             assert!((posterior.predictive_deviation(time).unwrap() / expected - 1.0).abs() < 1e-13, "{time}");
         }
@@ -246,7 +247,7 @@ mod tests {
 
     #[test]
     fn the_prior_pulls_as_documented() {
-        // 69 even peaks on a steep line: relative pulls of 2e-3, 2e-5 and 2e-11 for three widths.
+        // 69 even peaks on a steep line: relative shifts of 2e-3, 2e-5 and 2e-11 for three widths.
         let times: Vec<f64> = (0..69).map(|i| f64::from(i) / 68.0).collect();
         let values: Vec<f64> = times.iter().map(|t| 1.7 - 3.4 * t).collect();
         let statistics = Statistics::new(&times, &values);

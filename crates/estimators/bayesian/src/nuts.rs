@@ -1,30 +1,30 @@
-//! The no-U-turn sampler: one transition.
+//! No-U-turn sampler: one transition.
 //!
 //! Reference: Hoffman, Gelman, J. Mach. Learn. Res. 15 (2014) 1593, for the doubling and the step size;
 //! Betancourt, arXiv:1701.02434 (2017), appendix A.3 and A.4, for drawing from the trajectory by weight
-//! instead of by a slice and for the criterion of a turn with a metric that is not the identity.
+//! instead of by a slice, and for the U-turn criterion with a metric that is not the identity.
 
 use nalgebra::{Cholesky, Matrix3, U3, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// A position with what the density says there.
+/// Position with the density and its gradient there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub(crate) position: Vector3<f64>,
     /// Logarithm of the density, up to a constant.
     pub(crate) log_density: f64,
-    /// Its gradient.
+    /// Gradient of the logarithm of the density.
     pub(crate) gradient: Vector3<f64>,
 }
 
-/// A density in three dimensions.
+/// Density in three dimensions.
 pub(crate) trait LogDensity {
-    /// The density and its gradient at a position.
+    /// Returns the density and its gradient at a position.
     fn at(&self, position: Vector3<f64>) -> Point;
 }
 
-/// The inverse mass matrix: an estimate of the posterior's covariance.
+/// Inverse mass matrix: an estimate of the posterior's covariance.
 #[derive(Debug, Clone)]
 pub(crate) struct Metric {
     covariance: Matrix3<f64>,
@@ -32,20 +32,20 @@ pub(crate) struct Metric {
 }
 
 impl Metric {
-    /// The metric before anything is known of the posterior.
+    /// Returns the metric used before anything is known about the posterior.
     pub(crate) fn identity() -> Self {
         let covariance = Matrix3::identity();
         Self { covariance, factor: Cholesky::pack_dirty(covariance) }
     }
 
-    /// `None` where the matrix is not positive definite.
+    /// Creates a metric from a covariance; `None` if the matrix is not positive definite.
     pub(crate) fn new(covariance: Matrix3<f64>) -> Option<Self> {
         let finite = covariance.iter().all(|entry| entry.is_finite());
         let factor = Cholesky::new(covariance).filter(|_| finite)?;
         Some(Self { covariance, factor })
     }
 
-    /// A momentum, normal with the inverse of the covariance: with covariance = L·Lᵀ, p = L⁻ᵀ·n.
+    /// Draws a momentum, normal with the inverse of the covariance: p = L⁻ᵀ·n with covariance = L·Lᵀ.
     fn draw(&self, generator: &mut impl Rng) -> Vector3<f64> {
         let normal = Vector3::from_fn(|_, _| generator.sample::<f64, _>(StandardNormal));
         self.factor.l_dirty().tr_solve_lower_triangular(&normal).unwrap_or(normal)
@@ -56,7 +56,7 @@ impl Metric {
     }
 }
 
-/// A state in phase space.
+/// State in phase space.
 #[derive(Debug, Clone, Copy)]
 struct State {
     point: Point,
@@ -65,27 +65,27 @@ struct State {
 }
 
 impl State {
-    /// Energy: −ln density + ½·pᵀ·covariance·p.
+    /// Returns the energy −ln density + ½·pᵀ·covariance·p.
     fn energy(&self) -> f64 {
         0.5 * self.momentum.dot(&self.velocity) - self.point.log_density
     }
 }
 
-/// Beyond this loss of energy a trajectory has left the density for good.
+/// Energy error above which a trajectory is divergent.
 const MOST_ENERGY_ERROR: f64 = 1000.0;
 
-/// What a transition did.
+/// Result of a transition.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Transition {
-    /// Where the chain is now.
+    /// New point of the chain.
     pub(crate) point: Point,
-    /// Mean acceptance over the trajectory's states, which the step size is tuned by.
+    /// Mean acceptance over the trajectory's states, used to tune the step size.
     pub(crate) acceptance: f64,
-    /// Whether the energy ran away: the step is too long somewhere.
+    /// `true` if the trajectory diverged: the step is too long somewhere.
     pub(crate) diverged: bool,
 }
 
-/// A stretch of trajectory: both ends, the sum of momenta, total weight, and a draw by weight.
+/// Stretch of a trajectory: both ends, the sum of momenta, the total weight, and a draw by weight.
 #[derive(Clone, Copy)]
 struct Stretch {
     first: State,
@@ -95,7 +95,7 @@ struct Stretch {
     draw: Point,
 }
 
-/// The sampler's workings for one transition.
+/// Sampler of one transition.
 pub(crate) struct Trajectory<'a, D, G> {
     pub(crate) density: &'a D,
     pub(crate) metric: &'a Metric,
@@ -112,7 +112,7 @@ struct Tally {
 }
 
 impl<D: LogDensity, G: Rng> Trajectory<'_, D, G> {
-    /// One transition from a point.
+    /// Makes one transition from a point.
     pub(crate) fn transition(&mut self, from: Point) -> Transition {
         let momentum = self.metric.draw(self.generator);
         let start = State { point: from, momentum, velocity: self.metric.velocity(&momentum) };
@@ -149,8 +149,8 @@ impl<D: LogDensity, G: Rng> Trajectory<'_, D, G> {
         Transition { point: whole.draw, acceptance, diverged: tally.diverged }
     }
 
-    /// Steps 2^depth states on from an end; `first` of the result is nearest to that end. `None` where
-    /// the stretch turns back within itself or diverges.
+    /// Extends the trajectory by 2^depth states from an end; `first` of the result is nearest to that end.
+    /// `None` if the stretch makes a U-turn within itself or diverges.
     fn extend(
         &mut self,
         from: State,
@@ -194,7 +194,7 @@ impl<D: LogDensity, G: Rng> Trajectory<'_, D, G> {
     }
 }
 
-/// One leapfrog step.
+/// Makes one leapfrog step.
 fn leapfrog<D: LogDensity>(density: &D, metric: &Metric, from: &State, step: f64) -> State {
     let halfway = from.momentum + from.point.gradient * (0.5 * step);
     let point = density.at(from.point.position + metric.velocity(&halfway) * step);
@@ -202,8 +202,8 @@ fn leapfrog<D: LogDensity>(density: &D, metric: &Metric, from: &State, step: f64
     State { point, momentum, velocity: metric.velocity(&momentum) }
 }
 
-/// Whether two neighboring stretches together, or either with the nearest state of the other, turn back:
-/// the sum of momenta stops pointing along the velocity at an end.
+/// Returns `true` if two neighboring stretches together, or either one with the nearest state of the other,
+/// make a U-turn: at one end the velocity no longer points along the sum of momenta.
 fn turns(one: &Stretch, other: &Stretch) -> bool {
     let back = |sum: Vector3<f64>, first: &State, last: &State| {
         sum.dot(&first.velocity) <= 0.0 || sum.dot(&last.velocity) <= 0.0
@@ -218,7 +218,7 @@ fn add_logs(one: f64, other: f64) -> f64 {
     if large == f64::NEG_INFINITY { large } else { large + (small - large).exp().ln_1p() }
 }
 
-/// A step size at which one step's acceptance passes 0.8, by doubling or halving.
+/// Returns a step size near which one step's acceptance crosses 0.8, found by doubling or halving.
 ///
 /// Reference: Hoffman, Gelman (2014), algorithm 4, with Stan's 0.8 in place of 0.5.
 pub(crate) fn reasonable_step_size<D: LogDensity>(
@@ -233,7 +233,7 @@ pub(crate) fn reasonable_step_size<D: LogDensity>(
     let passes = |step: f64| start.energy() - leapfrog(density, metric, &start, step).energy() > 0.8_f64.ln();
     let up = passes(guess);
     let mut step = guess;
-    // Twenty decades either way are more than any posterior asks for.
+    // Twenty decades either way are more than any posterior needs.
     for _ in 0..66 {
         let next = if up { 2.0 * step } else { 0.5 * step };
         if passes(next) != up {
@@ -250,7 +250,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
     use seed::Seed;
 
-    /// A correlated normal density.
+    /// Correlated normal density.
     struct Normal(Matrix3<f64>);
 
     impl LogDensity for Normal {

@@ -1,4 +1,4 @@
-//! Several chains of the model, and what they say together.
+//! Sampling of the model by several chains, with summaries of their draws.
 
 use crate::chain::{Chain, Tuning};
 use crate::config::BayesianConfig;
@@ -10,30 +10,30 @@ use estimator::FitContext;
 use nalgebra::Vector3;
 use rand::RngExt;
 
-/// The chains agree when no R̂ is above this.
+/// R̂ below which the chains agree.
 ///
 /// Reference: Vehtari, Gelman, Simpson, Carpenter, Bürkner, Bayesian Anal. 16 (2021) 667, section 4.
 pub(crate) const LARGEST_R_HAT: f64 = 1.01;
 
-/// All chains after their draws.
+/// Draws of all chains.
 pub(crate) struct Sample {
     /// Draws after the warm-up, chain by chain.
     chains: Vec<Vec<Point>>,
-    /// Where the chains are.
+    /// Last points of the chains.
     places: Vec<Point>,
-    /// Transitions that each chain took.
+    /// Number of transitions of each chain.
     pub(crate) steps: u64,
-    /// Transitions after the warm-up whose energy ran away, over all chains.
+    /// Number of divergent transitions after the warm-up, over all chains.
     pub(crate) divergences: u64,
-    /// Somebody asked to stop.
+    /// `true` if a stop was requested.
     pub(crate) interrupted: bool,
-    /// The worst of the three quantities.
+    /// Worst diagnostics among the three quantities.
     pub(crate) diagnostics: Diagnostics,
 }
 
 impl Sample {
-    /// Draws from the model, chains in lock step; `watch` sees the number of transitions, the mean of
-    /// −ln density over the chains, and r, before the first transition and after each.
+    /// Draws from the model, with the chains in lockstep. `watch` receives the number of transitions, the
+    /// mean of −ln density over the chains, and r, before the first transition and after each one.
     pub(crate) fn draw(
         config: &BayesianConfig,
         model: &Model,
@@ -79,7 +79,7 @@ impl Sample {
         Self { chains, places, steps, divergences, interrupted, diagnostics }
     }
 
-    /// The posterior mean of w·(u, r, ℓ); before the first draw that of the chains' places.
+    /// Returns the posterior mean of w·(u, r, ℓ); before the first draw, that of the chains' current points.
     pub(crate) fn mean(&self, weights: &Vector3<f64>) -> Mean {
         if self.is_empty() {
             let total: f64 = self.places.iter().map(|place| place.position.dot(weights)).sum();
@@ -88,12 +88,12 @@ impl Sample {
         zero_variance::mean(&self.chains, weights)
     }
 
-    /// The mean of the draws as they are, which the closed form is checked against.
+    /// Returns the mean of the draws without control variates, which is used to check the closed form.
     pub(crate) fn plain_mean(&self, weights: &Vector3<f64>) -> Mean {
         zero_variance::plain_mean(&self.chains, weights)
     }
 
-    /// Standard deviation of w·(u, r, ℓ) over the draws, and its quantiles 2.5 % and 97.5 %.
+    /// Returns the standard deviation of w·(u, r, ℓ) over the draws, and its quantiles 2.5 % and 97.5 %.
     pub(crate) fn spread(&self, weights: &Vector3<f64>) -> (f64, [f64; 2]) {
         let draws = zero_variance::values(&self.chains, weights).concat();
         let count = draws.len() as f64;
@@ -102,8 +102,8 @@ impl Sample {
         ((squares / (count - 1.0)).sqrt(), [quantile(&draws, 0.025), quantile(&draws, 0.975)])
     }
 
-    /// Standard deviation of a new value at a time τ: by the law of total variance, the mean of σ² and the
-    /// variance of u − rτ over the draws.
+    /// Returns the standard deviation of a new value at a time τ, by the law of total variance: the mean of
+    /// σ² plus the variance of u − rτ over the draws.
     pub(crate) fn predictive_deviation(&self, time: f64) -> f64 {
         let (deviation, _) = self.spread(&Vector3::new(1.0, -time, 0.0));
         let variances = self.chains.iter().flatten().map(|draw| (2.0 * draw.position.z).exp());
@@ -111,32 +111,32 @@ impl Sample {
         (variances.sum::<f64>() / count + deviation * deviation).sqrt()
     }
 
-    /// The share of draws of w·(u, r, ℓ) that lie below a value.
+    /// Returns the share of draws of w·(u, r, ℓ) below a value.
     #[cfg(test)]
     pub(crate) fn share_below(&self, weights: &Vector3<f64>, value: f64) -> f64 {
         let draws = zero_variance::values(&self.chains, weights).concat();
         draws.iter().filter(|&&draw| draw < value).count() as f64 / draws.len() as f64
     }
 
-    /// Whether there are no draws yet.
+    /// Returns `true` if there are no draws yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.chains.iter().all(Vec::is_empty)
     }
 
-    /// Whether the chains agree, their draws are worth enough and no trajectory ran away.
+    /// Returns `true` if the chains agree, there are enough effective draws and no trajectory diverged.
     pub(crate) fn converged(&self, config: &BayesianConfig) -> bool {
         let Diagnostics { r_hat, bulk, tail } = self.diagnostics;
         r_hat < LARGEST_R_HAT && bulk.min(tail) >= config.least_effective_draws && self.divergences == 0
     }
 
-    /// R̂ and effective draws in words.
+    /// Returns R̂ and effective draws in words.
     pub(crate) fn in_words(&self) -> String {
         let Diagnostics { r_hat, bulk, tail } = self.diagnostics;
         format!("R-hat {r_hat:.4}, effective draws {bulk:.0} (bulk) and {tail:.0} (tail)")
     }
 }
 
-/// The worst of the three quantities.
+/// Returns the worst diagnostics among the three quantities.
 fn worst(chains: &[Vec<Point>]) -> Diagnostics {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     axes.iter().map(|axis| Diagnostics::of(&zero_variance::values(chains, axis))).fold(
@@ -150,15 +150,16 @@ fn worst(chains: &[Vec<Point>]) -> Diagnostics {
 }
 
 impl BayesianConfig {
-    /// A chain's start: u, r and ℓ uniform in −scale..scale. A steep line has u near 1.7 and r near 3.5
-    /// in these units: the starts lie apart by many widths of the posterior, and none is the answer.
+    /// Draws the start of a chain: u, r and ℓ uniform in −scale..scale. A steep line has u near 1.7 and r
+    /// near 3.5 in these units. The starts are many posterior widths apart, and none is the answer.
     fn start(&self, context: &FitContext<'_>, chain: usize) -> Vector3<f64> {
         let mut generator = context.seed(&format!("start of chain {chain}")).generator();
         Vector3::from_fn(|_, _| self.initial_scale * (2.0 * generator.random::<f64>() - 1.0))
     }
 }
 
-/// Whether the density is finite where the chains start.
+/// Returns the sum of −ln density over the starts of the chains; not finite if the density is undefined at a
+/// start.
 pub(crate) fn loss_at_start(config: &BayesianConfig, model: &Model, context: &FitContext<'_>) -> f64 {
     -(1..=config.chains).map(|number| model.at(config.start(context, number)).log_density).sum::<f64>()
 }

@@ -1,4 +1,4 @@
-//! The estimator as a whole.
+//! Tests of the whole estimator.
 
 use crate::model::{Model, Prior, Statistics};
 use crate::sampler::Sample;
@@ -18,12 +18,12 @@ fn config(method: Method) -> BayesianConfig {
     BayesianConfig { method, ..resolved.section("estimator").unwrap() }
 }
 
-/// An envelope that is no exponential: it bends and scatters.
+/// Returns an envelope that is no exponential: it bends and scatters.
 fn envelope() -> Envelope {
     conformance::bent().unwrap()
 }
 
-/// A line with normal scatter.
+/// Returns a line with normal scatter.
 fn simulated(peaks: usize, rate: f64, sigma: f64, generator: &mut impl Rng) -> Envelope {
     let times: Vec<f64> = (0..peaks).map(|i| 0.288 * i as f64).collect();
     let logs =
@@ -31,7 +31,7 @@ fn simulated(peaks: usize, rate: f64, sigma: f64, generator: &mut impl Rng) -> E
     Envelope::new(times, logs, 21.8).unwrap()
 }
 
-/// The slope of the least-squares line with the sign of a decay, and its standard error, from the textbook.
+/// Returns minus the slope of the least-squares line, and its standard error, by the textbook formulas.
 fn line(envelope: &Envelope) -> (f64, f64) {
     let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
     let n = t.len() as f64;
@@ -214,13 +214,13 @@ fn the_intervals_cover_as_often_as_they_say() {
             })
             .count();
         let share = covered as f64 / f64::from(replicates);
-        // Three standard errors of a share of 4000.
+        // The bound is three standard errors of a share of 4000.
         assert!((share - 0.95).abs() < 0.0104, "{peaks}: {share}");
     }
 }
 
-/// Simulation-based calibration: truths from the prior, data from the truths; the truth's rank among the
-/// draws is uniform if and only if the sampler draws from the posterior.
+/// Simulation-based calibration: truths are drawn from the prior, and data from the truths. The rank of the
+/// truth among the draws is uniform if and only if the sampler draws from the posterior.
 ///
 /// Reference: Talts, Betancourt, Simpson, Vehtari, Gelman, arXiv:1804.06788 (2018).
 fn calibration(replicates: usize) {
@@ -246,7 +246,8 @@ fn calibration(replicates: usize) {
             ranks[axis].push(below);
         }
     }
-    // Kolmogorov's distance from uniform, at one in a thousand for each of the three.
+    // The bound is Kolmogorov's distance from uniform, exceeded by chance once in a thousand for each of the
+    // three.
     let bound = 1.95 / (replicates as f64).sqrt();
     for (axis, mut shares) in ranks.into_iter().enumerate() {
         shares.sort_by(f64::total_cmp);
@@ -285,7 +286,7 @@ fn at_the_peaks_predictions_are_the_fitted_function() {
         for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
             assert!((prediction.log_amplitude - fitted).abs() < 1e-12);
         }
-        // Asking changes nothing else.
+        // Asking for predictions changes nothing else.
         assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(method, &envelope, 0));
     }
 }
@@ -308,7 +309,7 @@ fn an_exponential_without_scatter_is_extrapolated() {
     let predictions = fit_at(Method::Conjugate, &envelope, &times).predictions;
     for (time, prediction) in times.iter().zip(predictions) {
         let off = (prediction.log_amplitude + 0.6 + 0.2 * time).abs();
-        // The prior pulls by 2e-11 of the rate.
+        // The prior shifts the rate by a share of 2e-11.
         assert!(off < 1e-9 * (1.0 + time.abs()) && off < prediction.std_error.unwrap(), "{time}: {off:e}");
     }
 }
@@ -321,18 +322,18 @@ fn predictive_intervals_hold_fresh_peaks() {
     let held = (0..replicates)
         .filter(|&replicate| {
             let envelope = simulated(20, 0.2, 0.1, &mut generator);
-            // From the first peak to as far again beyond the last.
+            // Times from the first peak to one record length beyond the last.
             let times = [11.0 * f64::from(replicate) / f64::from(replicates)];
             let cancel = Cancel::new();
             let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).predicting_at(&times);
             let prediction = quick.fit(&envelope, &context).unwrap().predictions[0];
             let fresh = -0.6 - 0.2 * times[0] + 0.1 * generator.sample::<f64, _>(StandardNormal);
-            // Student's t with 18 degrees of freedom has the deviation √(18/16) times its scale.
+            // Student's t with 18 degrees of freedom has a standard deviation of √(18/16) times its scale.
             let scale = prediction.std_error.unwrap() * (16.0_f64 / 18.0).sqrt();
             (fresh - prediction.log_amplitude).abs() <= 2.1009 * scale
         })
         .count();
     let share = held as f64 / f64::from(replicates);
-    // Four standard deviations of such a share.
+    // The bounds are four standard deviations of such a share.
     assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(replicates)).sqrt(), "{share}");
 }

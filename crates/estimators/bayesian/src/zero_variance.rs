@@ -1,13 +1,14 @@
-//! Means of draws with most of their Monte-Carlo error taken off by the gradients the sampler has anyway.
+//! Means of draws, with most of their Monte-Carlo error removed by means of the gradients that the sampler
+//! computes anyway.
 //!
-//! With g the gradient of the log density, every one of gⱼ and, for a pair i ≤ j, xᵢgⱼ + xⱼgᵢ + 2δᵢⱼ has
-//! a mean of exactly zero under the density. What of a quantity's draws is a linear combination of these
-//! nine is noise, and is subtracted: the regression's coefficients are estimated from the same draws, which
-//! biases the mean by a share of its own error that falls as one over the number of draws.
+//! Let g be the gradient of the log density. Every gⱼ, and xᵢgⱼ + xⱼgᵢ + 2δᵢⱼ for every pair i ≤ j, has a
+//! mean of exactly zero under the density. So the part of a quantity's draws that is a linear combination of
+//! these nine is noise, and is subtracted. The coefficients of the regression are estimated from the same
+//! draws, which biases the mean by a share of its own error that falls as one over the number of draws.
 //!
-//! It knows nothing of the model but the gradient; the closed-form posterior takes no part. (The other
-//! textbook remedy, averaging the mean of λ given σ over the draws of σ, would: with the conjugate prior
-//! that mean does not depend on σ, and it would hand back the closed form whatever was sampled.)
+//! Only the gradient of the model is used; the closed-form posterior is not. (The other textbook remedy, the
+//! average over the draws of σ of the mean of λ given σ, would use it: with the conjugate prior that mean
+//! does not depend on σ, so that the result would be the closed form for any sample.)
 //!
 //! Reference: Mira, Solgi, Imparato, Stat. Comput. 23 (2013) 653, second-degree polynomials.
 
@@ -15,7 +16,7 @@ use crate::diagnostics::{effective_draws, split};
 use crate::nuts::Point;
 use nalgebra::{Cholesky, SMatrix, SVector, Vector3};
 
-/// A mean and its Monte-Carlo standard error.
+/// Mean with its Monte-Carlo standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mean {
     pub(crate) value: f64,
@@ -26,23 +27,23 @@ const CONTROLS: usize = 9;
 
 type Controls = SVector<f64, CONTROLS>;
 
-/// Fewest draws to estimate the regression's nine coefficients from.
+/// Fewest draws from which the regression's nine coefficients are estimated.
 const FEWEST_DRAWS: usize = 50 * CONTROLS;
 
-/// The mean of a linear quantity w·position over the chains' draws; the plain one where the draws are
-/// too few for a regression.
+/// Returns the mean of a linear quantity w·position over the chains' draws; the plain mean if there are too
+/// few draws for a regression.
 pub(crate) fn mean(chains: &[Vec<Point>], weights: &Vector3<f64>) -> Mean {
     let plain: Vec<Vec<f64>> = values(chains, weights);
     let reduced = without_noise(chains, &plain).unwrap_or_else(|| plain.clone());
     summarize(&reduced)
 }
 
-/// The plain mean, and its error.
+/// Returns the plain mean with its error.
 pub(crate) fn plain_mean(chains: &[Vec<Point>], weights: &Vector3<f64>) -> Mean {
     summarize(&values(chains, weights))
 }
 
-/// The quantity's draws, chain by chain.
+/// Returns the quantity's draws, chain by chain.
 pub(crate) fn values(chains: &[Vec<Point>], weights: &Vector3<f64>) -> Vec<Vec<f64>> {
     chains.iter().map(|chain| chain.iter().map(|draw| draw.position.dot(weights)).collect()).collect()
 }
@@ -61,7 +62,7 @@ fn without_noise(chains: &[Vec<Point>], plain: &[Vec<f64>]) -> Option<Vec<Vec<f6
     if count < FEWEST_DRAWS {
         return None;
     }
-    // Centered and scaled by the draws themselves, so that the nine are of one size.
+    // Centered and scaled by the draws themselves, so that the nine controls are of similar size.
     let center: Vector3<f64> = draws().map(|draw| draw.position).sum::<Vector3<f64>>() / count as f64;
     let squares: Vector3<f64> =
         draws().map(|draw| (draw.position - center).map(|x| x * x)).sum::<Vector3<f64>>() / count as f64;
@@ -109,7 +110,8 @@ mod tests {
 
     #[test]
     fn a_normal_posterior_leaves_no_noise_at_all() {
-        // Independent draws of a normal about (1, 2, 3): its gradient is linear, the remainder constant.
+        // Independent draws of a normal about (1, 2, 3): its gradient is linear, and the remainder is
+        // constant.
         let mut generator = Seed::new(2).generator();
         let chains: Vec<Vec<Point>> = (0..4)
             .map(|_| {

@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
@@ -6,19 +6,19 @@ use settings::{Default, Field, Kind};
 /// Settings of the matching. The ranges and defaults are in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EnvelopeMatchingConfig {
-    /// Integration steps in a period.
+    /// Number of integration steps per period.
     pub steps_per_period: usize,
     /// Most periods that are simulated.
     pub most_periods: usize,
     /// Most Levenberg–Marquardt steps.
     pub max_steps: u64,
-    /// Converged when a step moves the parameters by less than this.
+    /// Relative change of the parameters in one step below which the fit has converged.
     pub step_tolerance: f64,
-    /// Half width of the interval that the start values are drawn from.
+    /// Half-width of the interval that the start values are drawn from, in scaled units.
     pub initial_scale: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "steps_per_period",

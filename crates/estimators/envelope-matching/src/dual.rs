@@ -1,8 +1,8 @@
-//! Numbers that carry their derivative.
+//! Dual numbers, which carry their derivative.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value and its derivative by λ: arithmetic on it differentiates exactly.
+/// Value with its derivative by λ; arithmetic on it differentiates exactly.
 ///
 /// Reference: Griewank, Walther, Evaluating Derivatives (SIAM 2008), chapter 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ impl Dual {
         Self { value, slope: 0.0 }
     }
 
-    /// The variable that derivatives are taken by.
+    /// Creates the variable that derivatives are taken by.
     pub(crate) const fn variable(value: f64) -> Self {
         Self { value, slope: 1.0 }
     }

@@ -1,4 +1,4 @@
-//! The match.
+//! Fit of the simulated envelope to the measured one.
 
 use crate::config::EnvelopeMatchingConfig;
 use crate::matching::{Linearized, Matching, Reading};
@@ -10,10 +10,10 @@ use rand::RngExt;
 /// Fewest peaks: two parameters and a degree of freedom.
 const FEWEST_PEAKS: usize = 3;
 
-/// Most rejected steps in a row before the point is called the best there is.
+/// Most rejected steps in a row, after which the point counts as the best one.
 const MOST_REJECTIONS: u32 = 12;
 
-/// A step so small that the change of the loss drowns in its rounding, as a share of the loss.
+/// Predicted decrease of the loss, as a share of the loss, below which it cannot be told from rounding.
 const ROUNDING_SHARE: f64 = 1e-10;
 
 struct Found {
@@ -24,7 +24,7 @@ struct Found {
 }
 
 impl Found {
-    /// Whether the covariance of Gauss and Newton holds here: it is that of a minimum.
+    /// Returns `true` if the Gauss–Newton covariance holds at the final point, as it does only at a minimum.
     fn is_minimum(&self) -> bool {
         self.stop.reached == Reached::Converged
     }
@@ -64,7 +64,7 @@ impl Estimator for EnvelopeMatchingConfig {
 }
 
 impl EnvelopeMatchingConfig {
-    /// Both start values, uniform within plus or minus the scale.
+    /// Draws both start values, uniform within plus or minus the scale.
     fn start(&self, context: &FitContext<'_>) -> Vector2<f64> {
         let draw = |name: &str| {
             let uniform: f64 = context.seed(name).generator().random();
@@ -73,8 +73,8 @@ impl EnvelopeMatchingConfig {
         Vector2::new(draw("initial amplitude"), draw("initial decay rate"))
     }
 
-    /// Levenberg–Marquardt with Nielsen's update of the damping. Near the minimum, where the loss no
-    /// longer shows a step, one is taken when it lowers the gradient.
+    /// Minimizes the loss by Levenberg–Marquardt with Nielsen's update of the damping. Near the minimum,
+    /// where the decrease of the loss is below rounding, a step is accepted if it lowers the gradient.
     ///
     /// Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; Nielsen, report IMM-REP-1999-05 (DTU 1999).
     fn minimize(
@@ -86,7 +86,7 @@ impl EnvelopeMatchingConfig {
         let max_steps = context.step_limit(self.max_steps);
         let mut parameters = start;
         let mut at = matching.linearize(&start).ok_or(FitError::NotFinite { loss: f64::NAN })?;
-        // The problem is nearly linear: Gauss and Newton's own step is right from the start.
+        // The problem is nearly linear, so that the Gauss–Newton step is right from the start.
         let mut damping = 1e-6 * at.normal.diagonal().max();
         let (mut growth, mut rejections, mut steps) = (2.0, 0, 0);
         let mut last_step = f64::INFINITY;
@@ -144,9 +144,9 @@ impl EnvelopeMatchingConfig {
     }
 }
 
-/// The share of the predicted decrease that came true; `None` where the step is to be rejected.
+/// Returns the ratio of the actual to the predicted decrease; `None` if the step is to be rejected.
 fn gain(at: &Linearized, next: &Linearized, step: &Vector2<f64>, damping: f64) -> Option<f64> {
-    // ‖r‖² − ‖r + J·s‖² = sᵀ(μ·s − g) for the damped step s.
+    // The predicted decrease is ‖r‖² − ‖r + J·s‖² = sᵀ(μ·s − g) for the damped step s.
     let predicted = step.dot(&(step * damping - at.gradient));
     if predicted <= ROUNDING_SHARE * at.loss {
         let flatter = next.gradient.norm() < at.gradient.norm();
@@ -155,8 +155,8 @@ fn gain(at: &Linearized, next: &Linearized, step: &Vector2<f64>, damping: f64) -
     (next.loss < at.loss).then(|| ((at.loss - next.loss) / predicted).min(1.0))
 }
 
-/// The covariance of Gauss and Newton, (JᵀJ)⁻¹ times the residual variance, and Student's t on the peaks
-/// minus two degrees of freedom: exact where the scatter of ln A is Gaussian and independent.
+/// Returns the Gauss–Newton covariance, (JᵀJ)⁻¹ times the residual variance, with Student's t on the peaks
+/// minus two degrees of freedom. It is exact if the scatter of ln A is Gaussian and independent.
 fn uncertainty(matching: &Matching, found: &Found) -> Option<Uncertainty> {
     let degrees = matching.len() as f64 - 2.0;
     let variance = found.at.loss / degrees * found.at.normal.try_inverse()?.m22;
@@ -164,9 +164,10 @@ fn uncertainty(matching: &Matching, found: &Found) -> Option<Uncertainty> {
     Uncertainty::students_t(matching.scaling.rate_per_unit_time(found.parameters.y), std_error, degrees)
 }
 
-/// The simulated envelope at the times asked about; NaN where the simulation does not reach.
+/// Returns the simulated envelope at the query times; NaN where the simulation does not reach.
 ///
-/// The variance of a measured ln A is s²·(1 + gᵀ(JᵀJ)⁻¹g), g the derivatives of the simulated ln A there.
+/// The variance of a measured ln A is s²·(1 + gᵀ(JᵀJ)⁻¹g), with g the derivatives of the simulated ln A
+/// there.
 fn predictions(matching: &Matching, found: &Found, query_times: &[f64]) -> Vec<Prediction> {
     let scaling = &matching.scaling;
     let times: Vec<f64> = query_times.iter().map(|&time| scaling.unit_time(time)).collect();

@@ -1,14 +1,13 @@
-//! The simulated oscillator's envelope matched to the measured one.
+//! Matching of a simulated oscillator's envelope to the measured one.
 //!
 //! The damped oscillator θ'' + 2λθ' + ω₀²θ = 0 is integrated in time, its peaks are located on the
-//! trajectory, and their heights, in logarithms, are compared with the measured ones. Levenberg–Marquardt
-//! moves ln A₀ and λ until the two envelopes match in the sense of least squares. No solution of the
-//! differential equation enters, and no law of decay: the integrator takes the damping as a function of
-//! the velocity.
+//! trajectory, and the logarithms of their heights are compared with the measured ones. Levenberg–Marquardt
+//! adjusts ln A₀ and λ until the two envelopes match by least squares. Neither a solution of the differential
+//! equation nor a law of decay is used: the integrator takes the damping as a function of the velocity.
 //!
-//! The measured peaks are not evenly spaced (noise moves them), so the simulated envelope is read at the
-//! measured times, between the simulated peaks along the straight line in ln A. The measured ω is that
-//! of the damped motion; ω₀² = ω² + λ² then keeps the simulated period at the measured one for every λ,
+//! The measured peaks are not evenly spaced, because noise moves them. So the simulated envelope is evaluated
+//! at the measured times, by linear interpolation of ln A between the simulated peaks. The measured ω is that
+//! of the damped motion; ω₀² = ω² + λ² therefore keeps the simulated period at the measured one for every λ,
 //! and the motion an oscillation.
 //!
 //! Reference: Feldman, Mechanical Systems and Signal Processing 25 (2011) 735, for the identification of a
@@ -28,7 +27,7 @@ pub use config::EnvelopeMatchingConfig;
 
 use estimator::{Entry, Estimator, Tag};
 
-/// The registry's line.
+/// Registry entry of the envelope matching.
 pub const ENTRY: Entry = Entry {
     id: "envelope-matching",
     paper_number: Some(19),

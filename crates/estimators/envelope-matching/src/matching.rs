@@ -1,4 +1,4 @@
-//! The match as a problem of least squares.
+//! Matching as a least-squares problem.
 
 use crate::dual::Dual;
 use crate::oscillator::{Oscillator, Peak, Viscous};
@@ -10,37 +10,37 @@ use std::f64::consts::TAU;
 /// Fewest periods that are simulated.
 const FEWEST_PERIODS: f64 = 4.0;
 
-/// Most that ln A may change within a simulated period, so that the motion stays an oscillation.
+/// Largest change of ln A within a simulated period, so that the motion stays an oscillation.
 const MOST_CHANGE_PER_PERIOD: f64 = 2.0;
 
-/// What rounding leaves of ln A after the simulation of some tens of periods.
+/// Rounding error of ln A after the simulation of some tens of periods.
 const SIMULATION_NOISE: f64 = 1e-13;
 
-/// Most periods however much ln A changes: a simulation of seconds. Beyond, it is not finite.
+/// Most periods, however much ln A changes: a simulation of a few seconds. A longer one is not attempted.
 const LIMIT: f64 = 1e6;
 
-/// The measured envelope in scaled units, τ in 0..1 and z, and the oscillator that it is matched by.
+/// Measured envelope in scaled units, τ in 0..1 and z, with the oscillator that is matched to it.
 ///
-/// Parameters: z at time 0, and λ·T/spread with T the record's length.
+/// The parameters are z at time 0, and λ·T/spread with T the record's length.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Matching {
     pub(crate) scaling: Scaling,
     times: Vec<f64>,
     targets: Vec<f64>,
-    /// Angular frequency per record.
+    /// Angular frequency per record length.
     omega: f64,
     steps_per_period: f64,
 }
 
-/// The residuals' sum of squares and what Gauss and Newton need of it.
+/// Sum of squared residuals, with the terms that Gauss–Newton needs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Linearized {
     pub(crate) loss: f64,
-    /// JᵀJ.
+    /// Normal matrix JᵀJ.
     pub(crate) normal: Matrix2<f64>,
-    /// Jᵀr.
+    /// Half the gradient of the loss, Jᵀr.
     pub(crate) gradient: Vector2<f64>,
-    /// The simulated envelope at the measured times, scaled.
+    /// Simulated envelope at the measured times, scaled.
     pub(crate) fitted: Vec<f64>,
 }
 
@@ -51,8 +51,8 @@ impl Matching {
         most_periods: usize,
     ) -> Result<Self, FitError> {
         let scaling = Scaling::of(envelope)?;
-        // The envelope of a linear oscillator does not depend on its frequency. So the frequency may leave
-        // the measured one where the record is too long to simulate, or too short for a second peak.
+        // The envelope of a linear oscillator does not depend on its frequency. So the frequency may differ
+        // from the measured one if the record is too long to simulate, or too short for a second peak.
         let fewest = FEWEST_PERIODS.max(4.0 * scaling.spread() / MOST_CHANGE_PER_PERIOD).min(LIMIT);
         let periods =
             (envelope.omega_rad_s() * scaling.duration() / TAU).min(most_periods as f64).max(fewest);
@@ -65,24 +65,24 @@ impl Matching {
         })
     }
 
-    /// Number of measured peaks.
+    /// Returns the number of measured peaks.
     pub(crate) fn len(&self) -> usize {
         self.targets.len()
     }
 
-    /// What rounding leaves of ln A after a simulation, scaled.
+    /// Returns the rounding error of ln A after a simulation, scaled.
     pub(crate) fn simulation_noise(&self) -> f64 {
         SIMULATION_NOISE / self.scaling.spread()
     }
 
-    /// What the loss is when the match is exact but for rounding.
+    /// Returns the loss of a match that is exact up to rounding.
     pub(crate) fn rounding(&self) -> f64 {
         let digit = self.simulation_noise()
             + 4.0 * f64::EPSILON * (1.0 + (self.scaling.mean() / self.scaling.spread()).abs());
         self.len() as f64 * digit * digit
     }
 
-    /// Simulates and compares. `None` where the simulation is not finite.
+    /// Simulates and compares. `None` if the simulation is not finite.
     pub(crate) fn linearize(&self, parameters: &Vector2<f64>) -> Option<Linearized> {
         let peaks = self.simulate(Dual::variable(parameters.y * self.scaling.spread()), 1.0)?;
         let mut normal = Matrix2::zeros();
@@ -91,7 +91,7 @@ impl Matching {
         let mut fitted = Vec::with_capacity(self.len());
         for (log_height, target) in read(&peaks, &self.times).zip(&self.targets) {
             let value = parameters.x + log_height.value / self.scaling.spread();
-            // By λ·T/spread: both scales cancel.
+            // The derivative is by λ·T/spread: both scales cancel.
             let row = Vector2::new(1.0, log_height.slope);
             let residual = value - target;
             fitted.push(value);
@@ -104,11 +104,11 @@ impl Matching {
     }
 }
 
-/// The scaled envelope at a time, and its derivatives by the parameters.
+/// Scaled envelope at a time, with its derivatives by the parameters.
 pub(crate) type Reading = (f64, Vector2<f64>);
 
 impl Matching {
-    /// The peaks of the oscillator, let go at time 0, for as many records' lengths.
+    /// Simulates the peaks of the oscillator, released at time 0, over `duration` record lengths.
     fn simulate(&self, rate: Dual, duration: f64) -> Option<Vec<Peak>> {
         let oscillator = Oscillator {
             stiffness: Dual::constant(self.omega * self.omega) + rate * rate,
@@ -117,9 +117,9 @@ impl Matching {
         oscillator.peaks(duration, TAU / self.omega / self.steps_per_period)
     }
 
-    /// The simulated envelope at times τ in any order, within the record or beyond it: after the record the
-    /// simulation goes on, and before it the motion is followed backward in time, where damping drives.
-    /// `None` for a time that the simulation does not reach: it ends after a million periods.
+    /// Returns the simulated envelope at times τ in any order, within the record or beyond it. After the
+    /// record the simulation continues; before it the motion is followed backward in time, where the damping
+    /// adds energy. `None` for a time that the simulation does not reach: it ends after a million periods.
     pub(crate) fn readings(&self, parameters: &Vector2<f64>, times: &[f64]) -> Vec<Option<Reading>> {
         let mut found = vec![None; times.len()];
         let rate = Dual::variable(parameters.y * self.scaling.spread());
@@ -142,7 +142,7 @@ impl Matching {
     }
 }
 
-/// The simulated envelope at increasing times: between two peaks the straight line of ln A.
+/// Evaluates the simulated envelope at increasing times, by linear interpolation of ln A between peaks.
 fn read<'a>(peaks: &'a [Peak], times: &'a [f64]) -> impl Iterator<Item = Dual> + 'a {
     let mut spans = peaks.iter().zip(peaks.iter().skip(1)).peekable();
     times.iter().map_while(move |&time| {
@@ -173,7 +173,7 @@ mod tests {
             let slope = (loss(step) - loss(-step)) / (2.0 * step);
             assert!((here.gradient[axis] - slope / 2.0).abs() < 1e-8, "{axis}");
             let curvature = (loss(step) - 2.0 * here.loss + loss(-step)) / (step * step);
-            // The residuals are linear in the parameters but for the second order of the integrator.
+            // The residuals are linear in the parameters up to the error of the integrator.
             assert!((here.normal[(axis, axis)] / curvature * 2.0 - 1.0).abs() < 1e-5, "{axis} {curvature}");
         }
     }

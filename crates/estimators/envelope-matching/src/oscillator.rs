@@ -1,4 +1,4 @@
-//! The simulated oscillator and its peaks.
+//! Simulated oscillator and its peaks.
 
 use crate::dual::Dual;
 use std::ops::{Add, Mul, Sub};
@@ -6,19 +6,20 @@ use std::ops::{Add, Mul, Sub};
 /// Numbers of substeps in the rows of the extrapolation.
 const SUBSTEPS: [u32; 8] = [2, 4, 6, 8, 10, 12, 14, 16];
 
-/// Most corrections of a peak's time; three are enough where the motion is an oscillation.
+/// Most corrections of a peak's time; three are enough if the motion is an oscillation.
 const MOST_CORRECTIONS: usize = 20;
 
-/// What slows the oscillator down.
+/// Law of damping.
 pub(crate) trait Damping: Copy {
-    /// Deceleration at a velocity.
+    /// Returns the deceleration at a velocity.
     fn deceleration(&self, velocity: Dual) -> Dual;
 
-    /// The law for a motion whose amplitudes are `factor` times as large as those it is asked for.
+    /// Returns the law for a motion whose amplitudes are `factor` times as large as those that the returned
+    /// law is used with.
     fn for_amplitudes(&self, factor: f64) -> Self;
 }
 
-/// 2λθ': the deceleration of a viscous damper.
+/// Viscous damping: the deceleration 2λθ'.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Viscous {
     pub(crate) rate: Dual,
@@ -67,34 +68,34 @@ impl Mul<Dual> for State {
     }
 }
 
-/// A peak of the simulated motion.
+/// Peak of the simulated motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Peak {
     pub(crate) time: Dual,
-    /// ln of the height over that of the first peak.
+    /// Logarithm of the height, relative to that of the first peak.
     pub(crate) log_height: Dual,
 }
 
-/// θ'' = −ω₀²θ − damping(θ').
+/// Oscillator θ'' = −ω₀²θ − damping(θ').
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Oscillator<D> {
-    /// ω₀².
+    /// Stiffness ω₀².
     pub(crate) stiffness: Dual,
     pub(crate) damping: D,
 }
 
 impl<D: Damping> Oscillator<D> {
-    /// The peaks of a motion that is let go at height 1 at time 0 (that is the first of them), up to the
-    /// first one at or after `duration`; `step` is the integration step. `None` where the motion is not
-    /// finite or has no further peak.
+    /// Returns the peaks of a motion that is released at height 1 at time 0 (the first peak), up to the first
+    /// one at or after `duration`. `step` is the integration step. `None` if the motion is not finite or has
+    /// no further peak.
     pub(crate) fn peaks(mut self, duration: f64, step: f64) -> Option<Vec<Peak>> {
         let first = Peak { time: Dual::constant(0.0), log_height: Dual::constant(0.0) };
         let mut peaks = vec![first];
         let mut last = first;
         let mut state = State { position: Dual::constant(1.0), velocity: Dual::constant(0.0) };
-        // ln of the factor that was taken out of the state.
+        // Logarithm of the factor that was removed from the state.
         let mut log_factor = 0.0;
-        // A motion that creeps has no peaks; an oscillation of this step has one within a period.
+        // An overdamped motion has no peaks; an oscillation with this step has one within a period.
         let most_steps = (20.0 * std::f64::consts::TAU / (step * self.stiffness.value.sqrt())).ceil();
         while last.time.value < duration {
             let (since, top) = self.next_peak(state, step, most_steps as usize)?;
@@ -104,7 +105,7 @@ impl<D: Damping> Oscillator<D> {
                 return None;
             }
             peaks.push(last);
-            // A long record decays out of the range of doubles: take a power of two out, which is exact.
+            // A long record decays below the range of doubles: remove a power of two, which is exact.
             let exponent = top.position.value.log2().round();
             let factor = exponent.exp2();
             self.damping = self.damping.for_amplitudes(factor);
@@ -119,7 +120,7 @@ impl<D: Damping> Oscillator<D> {
         State { position: state.velocity, velocity: pull - self.damping.deceleration(state.velocity) }
     }
 
-    /// The time to the next peak and the state there, from a state at a peak.
+    /// Returns the time to the next peak and the state there, from a state at a peak.
     fn next_peak(&self, start: State, step: f64, most_steps: usize) -> Option<(Dual, State)> {
         let mut state = start;
         let mut rising = false;
@@ -138,8 +139,8 @@ impl<D: Damping> Oscillator<D> {
         None
     }
 
-    /// The time from `before` to where the velocity is zero, and the state there: Newton's method on the
-    /// integrated velocity, which rises before the peak and falls after it.
+    /// Returns the time from `before` to where the velocity is zero, and the state there, by Newton's method
+    /// on the integrated velocity, which is positive before the peak and negative after it.
     fn top(&self, before: State, after: State, step: f64) -> (Dual, State) {
         let share = before.velocity.value / (before.velocity.value - after.velocity.value);
         let mut time = Dual::constant(step * share);
@@ -149,7 +150,8 @@ impl<D: Damping> Oscillator<D> {
             time = time - correction;
             time.value = time.value.clamp(0.0, step);
             state = self.advance(before, time);
-            // The correction before this one squared is below rounding; the derivative follows one later.
+            // The square of the correction before this one is below rounding; the derivative converges one
+            // iteration later.
             if correction.value.abs() <= 1e-12 * step {
                 break;
             }
@@ -157,7 +159,7 @@ impl<D: Damping> Oscillator<D> {
         (time, state)
     }
 
-    /// A step of order 16: the explicit midpoint rule with several numbers of substeps, extrapolated to
+    /// Makes a step of order 16: the explicit midpoint rule with several numbers of substeps, extrapolated to
     /// infinitely many.
     ///
     /// Reference: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.9.
@@ -180,7 +182,7 @@ impl<D: Damping> Oscillator<D> {
         best
     }
 
-    /// The explicit midpoint rule, whose error has even powers of the substep only.
+    /// Makes a step by the explicit midpoint rule, whose error has only even powers of the substep.
     fn midpoint(&self, state: State, step: Dual, substeps: u32) -> State {
         let substep = step * (1.0 / f64::from(substeps));
         let double = substep * 2.0;
@@ -212,7 +214,7 @@ mod tests {
 
     #[test]
     fn the_peaks_are_those_of_the_solved_equation() {
-        // The solution has its peaks at 2πk/ω, of heights exp(−λt).
+        // The solution has its peaks at 2πk/ω, with heights exp(−λt).
         for rate in [0.19, -0.4, 0.0, 9.0] {
             for (k, peak) in viscous(rate).peaks(20.0, step(8.0)).unwrap().iter().enumerate() {
                 let time = std::f64::consts::TAU * k as f64 / OMEGA;

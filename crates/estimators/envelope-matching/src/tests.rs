@@ -14,7 +14,7 @@ fn config() -> EnvelopeMatchingConfig {
     resolved.section("estimator").unwrap()
 }
 
-/// An envelope that is no exponential, at uneven times: it bends and scatters.
+/// Returns an envelope that is no exponential, at uneven times: it bends and scatters.
 fn envelope() -> Envelope {
     let scatter = |i: usize| (i * 7919 % 101) as f64 / 101.0 - 0.5;
     let times: Vec<f64> = (0..69).map(|i| 0.288 * i as f64 + 0.1 * scatter(i + 31)).collect();
@@ -23,7 +23,8 @@ fn envelope() -> Envelope {
     Envelope::new(times, logs, 21.8).unwrap()
 }
 
-/// The slope of the least-squares line, its height at time 0 and its standard error, from the textbook.
+/// Returns minus the slope of the least-squares line, its height at time 0 and the standard error, by the
+/// textbook formulas.
 fn line(envelope: &Envelope) -> (f64, f64, f64) {
     let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
     let n = t.len() as f64;
@@ -45,7 +46,7 @@ fn fit(envelope: &Envelope, seed: u64) -> Estimate {
     try_fit(envelope, seed, None).unwrap()
 }
 
-/// The envelope with its times and logarithms changed.
+/// Returns the envelope with its times and logarithms changed.
 fn changed(times: impl Fn(f64) -> f64, logs: impl Fn(f64, f64) -> f64) -> Envelope {
     let (envelope, omega) = (envelope(), 21.8);
     let new_logs = envelope.times_s().iter().zip(envelope.log_amplitudes()).map(|(&t, &y)| logs(t, y));
@@ -105,7 +106,7 @@ fn an_exponential_is_recovered() {
         let times: Vec<f64> = (0..peaks).map(|i| 0.288 * f64::from(i)).collect();
         let logs = times.iter().map(|t| 0.3 - rate * t).collect();
         let estimate = fit(&Envelope::new(times, logs, 21.8).unwrap(), 0);
-        // The simulation's rounding, 1e-13 in ln A, limits a decay that hardly changes it.
+        // The simulation's rounding, 1e-13 in ln A, limits the accuracy for a decay that hardly changes ln A.
         let tolerance = 1e-12 + 1e-12 / (0.288 * f64::from(peaks) * rate.abs());
         assert!((estimate.decay_rate / rate - 1.0).abs() < tolerance, "{rate} {estimate:?}");
         assert_eq!(estimate.stop.reached, Reached::Converged, "{rate} {:?}", estimate.stop);
@@ -133,7 +134,7 @@ fn no_envelope_is_too_odd() {
         let (rate, ..) = line(&envelope);
         let estimate = fit(&envelope, 0);
         let scale = rate.abs() + estimate.uncertainty.unwrap().std_error;
-        // Times of 1e-200 s are too short for the textbook.
+        // Times of 1e-200 s are too short for the textbook formulas.
         assert!(rate.is_nan() || (estimate.decay_rate - rate).abs() < 1e-6 * scale, "{rate} {estimate:?}");
     }
 }
@@ -151,7 +152,7 @@ fn a_long_record_is_matched() {
     let envelope = Envelope::new(times, logs, 21.8).unwrap();
     let (rate, ..) = line(&envelope);
     assert!((fit(&envelope, 0).decay_rate / rate - 1.0).abs() < 1e-11);
-    // Fewer simulated periods than the record has: a slower oscillator, the same envelope.
+    // With fewer simulated periods than the record has, a slower oscillator has the same envelope.
     let slow = EnvelopeMatchingConfig { most_periods: 1000, ..config() };
     let cancel = Cancel::new();
     let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
@@ -165,7 +166,7 @@ fn the_interval_covers_as_often_as_it_says() {
         .filter(|&trial| {
             let peaks = 20 + trial % 30;
             let times: Vec<f64> = (0..peaks).map(|i| 0.288 * i as f64).collect();
-            // A sum of twelve uniform numbers is Gaussian enough.
+            // A sum of twelve uniform numbers is close enough to a Gaussian.
             let logs = times
                 .iter()
                 .map(|t| {
@@ -178,7 +179,7 @@ fn the_interval_covers_as_often_as_it_says() {
             (low..=high).contains(&0.19)
         })
         .count();
-    // 475 expected, standard deviation 4.9.
+    // 475 are expected, with a standard deviation of 4.9.
     assert!((460..=490).contains(&covered), "{covered}");
 }
 
@@ -206,14 +207,14 @@ fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
 
 #[test]
 fn at_the_peaks_predictions_are_the_fitted_function() {
-    // Backward: the order of the times does not matter.
+    // Backward, since the order of the times does not matter.
     let times: Vec<f64> = envelope().times_s().iter().rev().copied().collect();
     let estimate = fit_at(&envelope(), 0, &times);
     assert_eq!(estimate.predictions.len(), times.len());
     for (prediction, fitted) in estimate.predictions.iter().rev().zip(&estimate.fitted_log_amplitudes) {
         assert!((prediction.log_amplitude - fitted).abs() < 1e-14);
     }
-    // Asking changes nothing else.
+    // Asking for predictions changes nothing else.
     assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(&envelope(), 0));
 }
 
@@ -253,14 +254,14 @@ fn predictive_intervals_hold_fresh_peaks() {
             let times: Vec<f64> = (0..30).map(|i| 0.288 * f64::from(i)).collect();
             let logs = times.iter().map(|t| -0.6 - 0.19 * t + scatter()).collect();
             let envelope = Envelope::new(times, logs, 21.8).unwrap();
-            // From the first peak to as far again beyond the last.
+            // Times from the first peak to one record length beyond the last.
             let time = 16.0 * f64::from(trial) / f64::from(trials);
             let found = fit_at(&envelope, u64::from(trial), &[time]).predictions[0];
-            // Student's t with 28 degrees of freedom.
+            // Quantile of Student's t with 28 degrees of freedom.
             (scatter() - 0.6 - 0.19 * time - found.log_amplitude).abs() <= 2.0484 * found.std_error.unwrap()
         })
         .count();
     let share = held as f64 / f64::from(trials);
-    // Four standard deviations of such a share.
+    // The bounds are four standard deviations of such a share.
     assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(trials)).sqrt(), "{share}");
 }

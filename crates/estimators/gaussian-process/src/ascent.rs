@@ -1,10 +1,11 @@
-//! Uphill on the likelihood.
+//! Maximization of the likelihood.
 //!
-//! Newton's method with the curvature's eigenvalues taken by their size, so that it leaves saddles and ridges
-//! uphill, and no scale moving by more than a radius at once; the radius grows while the likelihood does
-//! what its second derivatives promise, and shrinks where it does not. Near a maximum it is Newton's method.
-//! (Scoring by average information, cheaper a step, goes to and fro for hundreds of steps along the ridge on
-//! which signal and length scale lie; damping in place of a radius crawls where the signal dies out.)
+//! The algorithm is Newton's method with the absolute values of the curvature's eigenvalues, so that it
+//! leaves saddles and ridges uphill, and with a trust radius on the change of each scale. The radius grows
+//! while the likelihood gains what its second derivatives predict, and shrinks otherwise. Near a maximum the
+//! algorithm is Newton's method. (Scoring by average information has cheaper steps, but oscillates for
+//! hundreds of steps along the ridge of signal and length scale. Damping instead of a radius makes very slow
+//! progress where the signal vanishes.)
 //!
 //! References: Nocedal, Wright, Numerical Optimization, 2nd ed. (2006), sections 3.4 and 4.1; Dauphin,
 //! Pascanu, Gulcehre, Cho, Ganguli, Bengio, Adv. Neural Inf. Process. Syst. 27 (2014) 2933.
@@ -13,41 +14,41 @@ use crate::likelihood::{Evaluation, Process, Slope};
 use nalgebra::Vector5;
 use std::ops::ControlFlow;
 
-/// Bounds of ln σ_f, ln ℓ and ln σ_n.
+/// Bounds of the parameters; ln σ_f, ln ℓ and ln σ_n are bounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bounds {
     pub(crate) least: Vector5<f64>,
     pub(crate) most: Vector5<f64>,
 }
 
-/// Why an ascent ended.
+/// Reason why an ascent ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ended {
-    /// No step promises more than the tolerance.
+    /// No step has a predicted gain above the tolerance.
     Converged,
-    /// Gradient or curvature is not finite.
+    /// The gradient or the curvature is not finite.
     Lost,
     /// The steps are used up.
     StepsSpent,
-    /// The observer asked to stop.
+    /// A stop was requested.
     Interrupted,
 }
 
-/// Where an ascent ended.
+/// End point of an ascent.
 pub(crate) struct Summit {
     pub(crate) at: Evaluation,
     pub(crate) ended: Ended,
 }
 
-/// Most rejected steps in a row: the likelihood is flat to rounding.
+/// Most rejected steps in a row, after which the likelihood counts as flat to rounding.
 const MOST_REJECTIONS: u32 = 10;
 
-/// Longest step in the logarithm of a scale: e² at once, e^0.7 at first.
+/// Longest step in the logarithm of a scale: a factor of e² at most, and of e^0.7 in the first step.
 const LARGEST_RADIUS: f64 = 2.0;
 const FIRST_RADIUS: f64 = 0.7;
 
-/// Climbs from a start within `budget` steps, rejected ones included; `watch` sees the start and the state
-/// after every step, and may break.
+/// Climbs from a start within `budget` steps, including rejected ones. `watch` receives the start and the
+/// state after every step, and may break.
 pub(crate) fn climb(
     process: &Process,
     bounds: &Bounds,
@@ -85,7 +86,8 @@ pub(crate) fn climb(
         match next {
             Some(next) => {
                 let kept = (next.value - at.value) / expected;
-                // A model that promises no gain where there is one knows nothing: the radius stays.
+                // If the model predicts no gain although there is one, its prediction is useless: the radius
+                // stays.
                 if kept > 0.75 {
                     radius = (2.0 * radius).min(LARGEST_RADIUS);
                 } else if (0.0..0.25).contains(&kept) {
@@ -104,16 +106,16 @@ pub(crate) fn climb(
     (Summit { at, ended }, steps)
 }
 
-/// A step.
+/// Uphill step with its predicted gain.
 struct Uphill {
     step: Vector5<f64>,
-    /// What the quadratic model promises of it; `None` where nothing is finite.
+    /// Gain predicted by the quadratic model; `None` if gradient or curvature is not finite.
     promise: Option<f64>,
 }
 
 impl Uphill {
-    /// V·|Λ|⁻¹·Vᵀ·gradient with V·Λ·Vᵀ the curvature, rows and columns of a and b scaled to one size with the
-    /// others; parameters that are held stay.
+    /// Computes V·|Λ|⁻¹·Vᵀ·gradient with V·Λ·Vᵀ the curvature. Rows and columns of a and b are scaled to the
+    /// size of the others. Held parameters do not move.
     fn new(slope: &Slope, held: &Vector5<bool>) -> Self {
         let free = held.map(|held| f64::from(u8::from(!held)));
         let mut scale = slope.curvature.diagonal().map(|entry| 1.0 / entry.abs().sqrt());
@@ -125,7 +127,7 @@ impl Uphill {
             return Self { step: Vector5::zeros(), promise: None };
         }
         let eigen = curvature.symmetric_eigen();
-        // A direction in which the likelihood neither rises nor bends is left alone.
+        // A direction in which the likelihood has neither slope nor curvature gets no step.
         let inverse = eigen.eigenvalues.map(|value| 1.0 / value.abs().max(1e-9));
         let along = eigen.eigenvectors.tr_mul(&gradient);
         let step = eigen.eigenvectors * inverse.component_mul(&along);
@@ -134,7 +136,7 @@ impl Uphill {
 }
 
 impl Slope {
-    /// gradientᵀ·step − ½·stepᵀ·curvature·step.
+    /// Returns gradientᵀ·step − ½·stepᵀ·curvature·step.
     fn model(&self, step: &Vector5<f64>) -> f64 {
         self.gradient.dot(step) - 0.5 * step.dot(&(self.curvature * step))
     }
@@ -145,8 +147,8 @@ impl Bounds {
         parameters.sup(&self.least).inf(&self.most)
     }
 
-    /// The parameters that rest against a bound and would go beyond, and the length scale of a signal that
-    /// is gone.
+    /// Returns the parameters that are at a bound and would cross it, and the length scale if the signal has
+    /// vanished.
     pub(crate) fn held(&self, parameters: &Vector5<f64>, gradient: &Vector5<f64>) -> Vector5<bool> {
         let below =
             parameters.zip_zip_map(&self.least, gradient, |here, least, pull| here <= least && pull < 0.0);

@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use crate::kernel::Kernel;
 use serde::Deserialize;
@@ -9,25 +9,26 @@ use settings::{Default, Field, Kind};
 pub struct GaussianProcessConfig {
     /// Covariance function.
     pub kernel: Kernel,
-    /// Number of drawn starts.
+    /// Number of random starts.
     pub starts: u64,
-    /// Most steps, all starts together.
+    /// Most steps, over all starts.
     pub max_steps: u64,
-    /// A start has converged when no step promises a greater gain of the log likelihood.
+    /// Predicted gain of the log likelihood at or below which a start has converged.
     pub tolerance: f64,
     /// Shortest length scale, as a share of the record's duration.
     pub shortest_length: f64,
     /// Longest length scale, as a share of the record's duration.
     pub longest_length: f64,
-    /// Scale of the half-Cauchy prior of the signal's standard deviation over the noise's.
+    /// Scale of the half-Cauchy prior of the ratio of the signal's standard deviation to the noise's.
     pub signal_scale: f64,
-    /// Most peaks: the cost goes with their cube.
+    /// Most peaks: the cost grows with their cube.
     pub most_peaks: usize,
-    /// The mean's coefficients start uniformly within this far from zero, in scaled units.
+    /// Half-width of the interval that the mean's coefficients start in, uniformly about zero, in scaled
+    /// units.
     pub initial_scale: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "kernel",

@@ -1,4 +1,4 @@
-//! Training, and what the trained process says.
+//! Training of the process, and its estimate.
 
 use crate::ascent::{Bounds, Ended, Summit, climb};
 use crate::config::GaussianProcessConfig;
@@ -12,11 +12,11 @@ use nalgebra::{Cholesky, Matrix5, Vector5};
 use rand::RngExt;
 use std::ops::ControlFlow;
 
-/// One more than there are parameters.
+/// Fewest peaks: one more than the number of parameters.
 const FEWEST_PEAKS: usize = 6;
 
-/// Least standard deviation of signal and noise, in standard deviations of ln A: what a double leaves of a
-/// covariance matrix.
+/// Least standard deviation of signal and noise, in standard deviations of ln A: the resolution of a
+/// covariance matrix in doubles.
 const LEAST_DEVIATION: f64 = 1e-6;
 
 impl Estimator for GaussianProcessConfig {
@@ -46,7 +46,7 @@ impl Estimator for GaussianProcessConfig {
     }
 }
 
-/// The best of all starts.
+/// Best result of all starts.
 struct Trained {
     best: Evaluation,
     stop: Stop,
@@ -55,7 +55,8 @@ struct Trained {
 }
 
 impl GaussianProcessConfig {
-    /// Scales between which to look; a and b are free. A signal at zero is one that a double hardly holds.
+    /// Returns the bounds of the scales; a and b are free. A signal held at zero has the least standard
+    /// deviation.
     fn bounds(&self, context: &FitContext<'_>) -> Bounds {
         let least = LEAST_DEVIATION.ln();
         let free = f64::INFINITY;
@@ -67,9 +68,10 @@ impl GaussianProcessConfig {
         }
     }
 
-    /// A start: a and b uniform about zero; the logarithms of signal (0.05 to 0.2 standard deviations of
-    /// ln A), length (all that is allowed) and noise (0.5 to 2) uniform. The noise is large and the signal
-    /// small, so that the process does not follow the data before it is trained.
+    /// Draws a start: a and b uniform about zero; the logarithms of the signal (0.05 to 0.2 standard
+    /// deviations of ln A), the length scale (the whole allowed range) and the noise (0.5 to 2) uniform. The
+    /// noise is large and the signal small, so that the process does not follow the data before it is
+    /// trained.
     fn start(&self, context: &FitContext<'_>, number: u64) -> Vector5<f64> {
         let mut generator = context.seed(&format!("start {number}")).generator();
         let mut between = |from: f64, to: f64| from + (to - from) * generator.random::<f64>();
@@ -98,7 +100,7 @@ impl GaussianProcessConfig {
             let start = start.ok_or(FitError::NotFinite { loss: f64::NAN })?;
             let phase = format!("start {number} of {}", self.starts);
             let watch = |step: u64, at: &Evaluation| {
-                // The start of a later ascent is no step of its own.
+                // The start of a later ascent does not count as a step.
                 if step > 0 || number == 1 {
                     context.observe(&Step {
                         step: steps + step,
@@ -127,7 +129,7 @@ impl GaussianProcessConfig {
             ended = Ended::StepsSpent;
         }
         if ended == Ended::Converged {
-            // The last digits of a and b: the second solution takes what rounding left of the first.
+            // For the last digits of a and b: the second solution removes the rounding error of the first.
             for _ in 0..2 {
                 let value = best.value;
                 best = process.settle_mean(best).ok_or(FitError::NotFinite { loss: -value })?;
@@ -179,9 +181,10 @@ impl GaussianProcessConfig {
     }
 }
 
-/// Degrees of freedom of the noise's variance by Satterthwaite's rule, 2·σ_n⁴/var(σ_n²) = 1/(2·var(ln σ_n)),
-/// the variance from the inverse of the likelihood's curvature: so the interval widens where signal and
-/// noise are hard to tell apart. Never more than the peaks less the effective number of parameters.
+/// Returns the degrees of freedom of the noise's variance by Satterthwaite's rule, 2·σ_n⁴/var(σ_n²) =
+/// 1/(2·var(ln σ_n)). The variance comes from the inverse of the likelihood's curvature, so that the interval
+/// widens if signal and noise are hard to tell apart. The result is at most the number of peaks minus the
+/// effective number of parameters.
 ///
 /// References: Satterthwaite, Biom. Bull. 2 (1946) 110; Giesbrecht, Burns, Biometrics 41 (1985) 477.
 fn degrees_of_freedom(slope: &Slope, bounds: &Bounds, at: &Evaluation) -> f64 {
@@ -189,13 +192,13 @@ fn degrees_of_freedom(slope: &Slope, bounds: &Bounds, at: &Evaluation) -> f64 {
     let free = held.map(|held| f64::from(u8::from(!held)));
     let mut curvature = slope.curvature.component_mul(&(free * free.transpose()));
     curvature += Matrix5::from_diagonal(&(Vector5::repeat(1.0) - free));
-    // Noise that rests against its bound is smaller than stated: nothing uncertain about that.
+    // Noise at its lower bound is smaller than stated and has no uncertainty.
     let factor = Cholesky::new(curvature).filter(|_| free.iter().next_back() == Some(&1.0));
     let satterthwaite = factor.map_or(f64::INFINITY, |factor| 0.5 / factor.inverse().m55);
     satterthwaite.min(slope.degrees_of_freedom)
 }
 
-/// The least-squares slope of function values over the times.
+/// Projection on a line: the least-squares slope of function values over the times.
 struct Projection {
     weights: Vec<f64>,
     /// Sum of squares of the times about their mean.

@@ -4,23 +4,23 @@
 
 use serde::Deserialize;
 
-/// A correlation k(ρ) of two function values at a distance of ρ length scales, ρ ≥ 0.
+/// Correlation k(ρ) of two function values at a distance of ρ length scales, ρ ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum Kernel {
     /// Squared exponential, k = exp(−ρ²/2): infinitely smooth.
     #[serde(rename = "rbf")]
     Rbf,
-    /// Matérn 3/2, k = (1 + √3·ρ)·exp(−√3·ρ): smooth once.
+    /// Matérn 3/2, k = (1 + √3·ρ)·exp(−√3·ρ): differentiable once.
     #[serde(rename = "matern-3/2")]
     MaternThreeHalves,
-    /// Matérn 5/2, k = (1 + √5·ρ + 5ρ²/3)·exp(−√5·ρ): smooth twice.
+    /// Matérn 5/2, k = (1 + √5·ρ + 5ρ²/3)·exp(−√5·ρ): differentiable twice.
     #[serde(rename = "matern-5/2")]
     MaternFiveHalves,
 }
 
 impl Kernel {
-    /// k(ρ) and its first and second derivative with respect to the logarithm of the length scale, D =
-    /// −ρ·d/dρ:
+    /// Returns k(ρ) and its first and second derivative with respect to the logarithm of the length scale,
+    /// with D = −ρ·d/dρ:
     ///
     /// - RBF: Dk = ρ²·E and D²k = (ρ⁴ − 2ρ²)·E with E = exp(−ρ²/2);
     /// - Matérn 3/2: Dk = 3ρ²·E and D²k = (3√3·ρ³ − 6ρ²)·E with E = exp(−√3·ρ);
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn they_are_the_formulas_of_the_book() {
-        // Rasmussen, Williams (2006): the general Matern, equation 4.16, for p = 1 and p = 2.
+        // The general Matérn function of Rasmussen, Williams (2006), equation 4.16, for p = 1 and p = 2.
         let matern = |p: u32, distance: f64| {
             let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
             let root = (2.0 * (f64::from(p) + 0.5)).sqrt();

@@ -1,16 +1,16 @@
-//! The restricted log likelihood with a prior, its gradient, and its curvature.
+//! Restricted log likelihood with a prior, its gradient, and its curvature.
 
 use crate::kernel::Kernel;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Matrix3, Matrix5, Vector2, Vector3, Vector5};
 use std::f64::consts::TAU;
 
-/// The process in scaled units: z(τ) = a + b·(2τ − 1) + g(τ) + noise, with g of covariance σ_f²·k(|τ − τ′|/ℓ)
-/// and white noise of variance σ_n².
+/// Process in scaled units: z(τ) = a + b·(2τ − 1) + g(τ) + noise, with g of covariance σ_f²·k(|τ − τ′|/ℓ) and
+/// white noise of variance σ_n².
 ///
-/// Parameters, in this order: a, b, ln σ_f, ln ℓ, ln σ_n; ℓ in units of the record's duration.
+/// The parameters, in this order, are a, b, ln σ_f, ln ℓ, ln σ_n; ℓ is in units of the record's duration.
 pub(crate) struct Process {
     kernel: Kernel,
-    /// s: scale of the half-Cauchy prior of σ_f/σ_n.
+    /// Scale s of the half-Cauchy prior of σ_f/σ_n.
     signal_scale: f64,
     times: DVector<f64>,
     distances: DMatrix<f64>,
@@ -19,27 +19,27 @@ pub(crate) struct Process {
     values: DVector<f64>,
 }
 
-/// The likelihood at a point. With C the covariance of the values, H the basis and e = z − H·(a, b):
-/// L = −½·eᵀC⁻¹e − ½·ln|C| − ½·ln|HᵀC⁻¹H| − ½·(N − 2)·ln 2π − ln(1 + (σ_f/(s·σ_n))²).
+/// Likelihood at a point. With C the covariance of the values, H the basis and e = z − H·(a, b) it is L =
+/// −½·eᵀC⁻¹e − ½·ln|C| − ½·ln|HᵀC⁻¹H| − ½·(N − 2)·ln 2π − ln(1 + (σ_f/(s·σ_n))²).
 ///
 /// Without its last term, its maximum over a and b is the restricted likelihood of the covariance's
-/// parameters; here a and b are trained with the others, and start where the seed puts them. The last term
-/// is a half-Cauchy prior of scale s of the ratio of signal to noise: scatter has to earn being called
-/// signal. Without it the noise of a straight envelope comes out low, by 5 % for 20 peaks and by 12 % for
-/// 10, and the intervals too narrow.
+/// parameters; here a and b are trained with the others, from starts drawn by the seed. The last term is a
+/// half-Cauchy prior of scale s of the ratio of signal to noise: scatter counts as signal only if the data
+/// support it. Without the prior the noise of a straight envelope is underestimated, by 5 % for 20 peaks and
+/// by 12 % for 10, and the intervals are too narrow.
 ///
 /// References: Rasmussen, Williams, Gaussian Processes for Machine Learning (2006), equations 2.45 and 5.9;
 /// Patterson, Thompson, Biometrika 58 (1971) 545; Gelman, Bayesian Anal. 1 (2006) 515, section 5.
 pub(crate) struct Evaluation {
     pub(crate) parameters: Vector5<f64>,
-    /// L.
+    /// Log likelihood L.
     pub(crate) value: f64,
-    /// C⁻¹e.
+    /// Weights C⁻¹e.
     pub(crate) weights: DVector<f64>,
     factor: Cholesky<f64, Dyn>,
-    /// C⁻¹H.
+    /// Product C⁻¹H.
     basis_weights: DMatrix<f64>,
-    /// HᵀC⁻¹H.
+    /// Information on the mean's coefficients, HᵀC⁻¹H.
     mean_information: Matrix2<f64>,
 }
 
@@ -48,12 +48,12 @@ pub(crate) struct Slope {
     pub(crate) gradient: Vector5<f64>,
     /// Minus the matrix of second derivatives.
     pub(crate) curvature: Matrix5<f64>,
-    /// σ_n²·tr P: the number of peaks less the effective number of parameters of the fitted function.
+    /// Number of peaks minus the effective number of parameters of the fitted function, σ_n²·tr P.
     pub(crate) degrees_of_freedom: f64,
 }
 
 impl Process {
-    /// Times τ in 0..1 and values z, equally many.
+    /// Creates a process from times τ in 0..1 and values z, of equal number.
     pub(crate) fn new(kernel: Kernel, signal_scale: f64, times: &[f64], values: &[f64]) -> Self {
         let column = DVector::from_column_slice(times);
         let count = column.len();
@@ -68,7 +68,7 @@ impl Process {
         Self { kernel, signal_scale, times: column, distances, basis, values }
     }
 
-    /// The likelihood; `None` where the covariance is not positive definite to rounding.
+    /// Evaluates the likelihood; `None` if the covariance is not positive definite to rounding.
     pub(crate) fn evaluate(&self, parameters: Vector5<f64>) -> Option<Evaluation> {
         let [signal, inverse_length, noise] = scales(&parameters);
         let mut covariance =
@@ -86,7 +86,7 @@ impl Process {
         self.at_mean(parameters, factor, basis_weights, mean_information, log_determinant)
     }
 
-    /// The likelihood with the covariance's part already known.
+    /// Evaluates the likelihood with the covariance's part already known.
     fn at_mean(
         &self,
         parameters: Vector5<f64>,
@@ -111,8 +111,8 @@ impl Process {
         })
     }
 
-    /// Minus the logarithm of the prior, ln(1 + (σ_f/(s·σ_n))²), and its first and second derivative with
-    /// respect to ln σ_f − ln σ_n.
+    /// Returns minus the logarithm of the prior, ln(1 + (σ_f/(s·σ_n))²), and its first and second derivative
+    /// with respect to ln σ_f − ln σ_n.
     fn penalty(&self, parameters: &Vector5<f64>) -> [f64; 3] {
         let [signal, _, noise] = scales(parameters);
         let square = signal / (noise * self.signal_scale * self.signal_scale);
@@ -120,13 +120,13 @@ impl Process {
         [square.ln_1p(), 2.0 * share, 4.0 * share / (1.0 + square)]
     }
 
-    /// H·(a, b).
+    /// Returns H·(a, b).
     fn mean(&self, parameters: &Vector5<f64>) -> DVector<f64> {
         &self.basis * parameters.fixed_rows::<2>(0)
     }
 
-    /// Gradient and curvature, exact. With α = C⁻¹e, P = C⁻¹ − C⁻¹H(HᵀC⁻¹H)⁻¹HᵀC⁻¹, and Cᵢ, Cᵢⱼ derivatives
-    /// of C by the logarithms of the scales, but for the prior:
+    /// Returns the exact gradient and curvature. With α = C⁻¹e, P = C⁻¹ − C⁻¹H(HᵀC⁻¹H)⁻¹HᵀC⁻¹, and Cᵢ, Cᵢⱼ
+    /// the derivatives of C by the logarithms of the scales, they are, apart from the prior:
     ///
     /// - ∂L/∂(a, b) = Hᵀα, ∂L/∂ᵢ = ½·αᵀCᵢα − ½·tr(PCᵢ);
     /// - ∂²L/∂(a, b)² = −HᵀC⁻¹H, ∂²L/∂(a, b)∂ᵢ = −HᵀC⁻¹Cᵢα;
@@ -145,7 +145,8 @@ impl Process {
         let mean_covariance = at.mean_information.try_inverse().unwrap_or_else(Matrix2::zeros);
         let projector = &inverse - &at.basis_weights * mean_covariance * at.basis_weights.transpose();
 
-        // With C = σ_f²K + σ_n²: by ln σ_f it is 2(C − σ_n²), by ln σ_n 2σ_n²; P·C·P = P, tr(P·C) = N − 2.
+        // With C = σ_f²K + σ_n², the derivative by ln σ_f is 2(C − σ_n²), and by ln σ_n it is 2σ_n²; P·C·P =
+        // P, tr(P·C) = N − 2.
         let product = &projector * &by_length;
         let degrees_of_freedom = noise * projector.trace();
         let signal_share = count as f64 - 2.0 - degrees_of_freedom;
@@ -169,7 +170,8 @@ impl Process {
             4.0 * squared,
         );
 
-        // Cᵢα, and the same with second derivatives, which but for the length's are multiples of the first.
+        // The terms Cᵢα, and those with second derivatives, which are multiples of the first except for the
+        // length scale.
         let left = &self.values - self.mean(&at.parameters);
         let pulls = DMatrix::from_columns(&[
             (&left - &at.weights * noise) * 2.0,
@@ -211,7 +213,7 @@ impl Process {
         Slope { gradient, curvature, degrees_of_freedom }
     }
 
-    /// A Newton step in a and b alone, where the likelihood is quadratic and the step exact.
+    /// Takes a Newton step in a and b alone, where the likelihood is quadratic and the step exact.
     pub(crate) fn settle_mean(&self, at: Evaluation) -> Option<Evaluation> {
         let pull = self.basis.tr_mul(&at.weights);
         let step = at.mean_information.try_inverse()? * pull.fixed_rows::<2>(0);
@@ -222,7 +224,7 @@ impl Process {
         self.at_mean(parameters, at.factor, at.basis_weights, at.mean_information, log_determinant)
     }
 
-    /// The posterior mean of the function at the times: z − σ_n²·C⁻¹e.
+    /// Returns the posterior mean of the function at the times: z − σ_n²·C⁻¹e.
     ///
     /// Reference: Rasmussen, Williams (2006), equation 2.38, with K·C⁻¹e = e − σ_n²·C⁻¹e.
     pub(crate) fn fitted(&self, at: &Evaluation) -> DVector<f64> {
@@ -230,12 +232,12 @@ impl Process {
         &self.values - &at.weights * noise
     }
 
-    /// The posterior mean of the function at a time τ and the variance of a new value there, noise and all,
-    /// under a flat prior of a and b: with k the covariances of the function there with those at the peaks
-    /// and h = (1, 2τ − 1),
+    /// Returns the posterior mean of the function at a time τ and the variance of a new value there,
+    /// including the noise, under a flat prior of a and b. With k the covariances of the function there with
+    /// those at the peaks and h = (1, 2τ − 1), they are:
     ///
     /// - mean hᵀ(a, b) + kᵀC⁻¹e;
-    /// - variance σ_f² − kᵀC⁻¹k + rᵀ(HᵀC⁻¹H)⁻¹r + σ_n², r = h − HᵀC⁻¹k.
+    /// - variance σ_f² − kᵀC⁻¹k + rᵀ(HᵀC⁻¹H)⁻¹r + σ_n², with r = h − HᵀC⁻¹k.
     ///
     /// Reference: Rasmussen, Williams (2006), equations 2.38, 2.41 and 2.42.
     pub(crate) fn predict(&self, at: &Evaluation, time: f64) -> (f64, f64) {
@@ -247,12 +249,12 @@ impl Process {
         let seen = across.dot(&at.factor.solve(&across));
         let rest = basis - at.basis_weights.tr_mul(&across).fixed_rows::<2>(0);
         let line = at.mean_information.try_inverse().map_or(f64::NAN, |inverse| rest.dot(&(inverse * rest)));
-        // Rounding may take a variance that is next to none below it.
+        // Rounding may make a variance near zero negative.
         (mean, (signal - seen).max(0.0) + line + noise)
     }
 }
 
-/// σ_f², 1/ℓ and σ_n².
+/// Returns σ_f², 1/ℓ and σ_n².
 fn scales(parameters: &Vector5<f64>) -> [f64; 3] {
     let [_, _, log_signal, log_length, log_noise] = (*parameters).into();
     [(2.0 * log_signal).exp(), (-log_length).exp(), (2.0 * log_noise).exp()]
@@ -280,7 +282,7 @@ mod tests {
         Vector5::new(0.2, -0.9, -0.5, -1.1, -1.3)
     }
 
-    /// Covariance, basis and values as plain matrices.
+    /// Returns covariance, basis and values as plain matrices.
     fn matrices(process: &Process, at: &Vector5<f64>) -> (DMatrix<f64>, DMatrix<f64>, DVector<f64>) {
         let [signal, inverse_length, noise] = scales(at);
         let kernel = process.distances.map(|d| signal * process.kernel.correlation(d * inverse_length)[0]);
@@ -360,7 +362,8 @@ mod tests {
 
     #[test]
     fn a_new_value_is_what_conditioning_makes_of_it() {
-        // A line with a prior as good as flat joined to the signal: one Gaussian of peaks and new value.
+        // A line with an almost flat prior is added to the signal, so that peaks and new value are jointly
+        // Gaussian.
         for kernel in ALL {
             let process = process(kernel);
             let (c, h, z) = matrices(&process, &point());

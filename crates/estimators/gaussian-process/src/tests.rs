@@ -1,4 +1,4 @@
-//! The estimator as a whole.
+//! Tests of the whole estimator.
 
 use crate::{ENTRY, GaussianProcessConfig, Kernel};
 use envelope::Envelope;
@@ -16,12 +16,12 @@ fn config(kernel: Kernel) -> GaussianProcessConfig {
     GaussianProcessConfig { kernel, ..resolved.section("estimator").unwrap() }
 }
 
-/// An envelope that is no exponential: it bends and scatters.
+/// Returns an envelope that is no exponential: it bends and scatters.
 fn envelope() -> Envelope {
     conformance::bent().unwrap()
 }
 
-/// A line with scatter, normal but for the far tails: twelve uniform draws each.
+/// Returns a line with scatter that is normal except for the far tails: the sum of twelve uniform draws each.
 fn simulated(peaks: usize, rate: f64, sigma: f64, generator: &mut impl Rng) -> Envelope {
     let times: Vec<f64> = (0..peaks).map(|i| 0.288 * i as f64).collect();
     let logs = times
@@ -34,7 +34,7 @@ fn simulated(peaks: usize, rate: f64, sigma: f64, generator: &mut impl Rng) -> E
     Envelope::new(times, logs, 21.8).unwrap()
 }
 
-/// The slope of the least-squares line with the sign of a decay, and its standard error, from the textbook.
+/// Returns minus the slope of the least-squares line, and its standard error, by the textbook formulas.
 fn line(envelope: &Envelope) -> (f64, f64) {
     let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
     let n = t.len() as f64;
@@ -150,7 +150,7 @@ fn it_follows_a_change_of_unit_and_an_added_decay() {
     ] {
         let estimate = fit(Kernel::Rbf, &envelope, 0);
         assert!((estimate.decay_rate / expected - 1.0).abs() < 1e-12);
-        // The interval is of the same maximum, however steep the line.
+        // The interval belongs to the same maximum, however steep the line.
         assert!((estimate.uncertainty.unwrap().std_error * time / error - 1.0).abs() < 1e-3);
     }
 }
@@ -189,7 +189,7 @@ fn odd_envelopes_get_an_estimate_or_a_typed_error() {
             let numbers = [estimate.decay_rate, estimate.log_amplitude, interval[0], interval[1]];
             assert!(numbers.iter().all(|number| number.is_finite()), "{estimate:?}");
             let (rate, error) = line(&envelope);
-            // The textbook's squares overflow where the times do not.
+            // The textbook's squares overflow for some times that do not.
             let ordinary = (1e-100..1e100).contains(&envelope.times_s()[1]) && error < 1e100;
             if estimate.stop.reached == Reached::Converged && ordinary {
                 assert!((estimate.decay_rate - rate).abs() < 1e-6 * error.max(rate.abs()), "{estimate:?}");
@@ -214,7 +214,7 @@ fn envelopes_it_cannot_take_are_refused() {
     );
 }
 
-/// The share of intervals that hold the truth over straight envelopes with normal scatter.
+/// Returns the share of intervals that hold the truth, over straight envelopes with normal scatter.
 fn coverage(kernel: Kernel, peaks: usize, replicates: u64) -> f64 {
     let mut generator = Seed::new(7).generator();
     let held = (0..replicates).filter(|&replicate| {
@@ -229,7 +229,7 @@ fn coverage(kernel: Kernel, peaks: usize, replicates: u64) -> f64 {
 fn the_intervals_hold_the_truth_as_often_as_they_say() {
     for kernel in KERNELS {
         let share = coverage(kernel, 20, 400);
-        // Three standard errors of a share of 400.
+        // The bound is three standard errors of a share of 400.
         assert!((share - 0.95).abs() < 0.033, "{kernel:?}: {share}");
     }
 }
@@ -260,7 +260,7 @@ fn at_the_peaks_predictions_are_the_fitted_function() {
         for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
             assert!((prediction.log_amplitude - fitted).abs() < 1e-10, "{kernel:?}: {prediction:?} {fitted}");
         }
-        // Asking changes nothing else.
+        // Asking for predictions changes nothing else.
         assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(kernel, &envelope, 0));
     }
 }
@@ -284,15 +284,15 @@ fn predictive_intervals_hold_fresh_peaks() {
     let held = (0..replicates)
         .filter(|&replicate| {
             let envelope = simulated(30, 0.2, 0.1, &mut generator);
-            // From the first peak to a quarter of the record beyond the last.
+            // Times from the first peak to a quarter of the record beyond the last.
             let time = 10.8 * f64::from(replicate) / f64::from(replicates);
             let fresh = simulated(3, 0.0, 0.1, &mut generator).log_amplitudes()[2] - 0.2 * time;
             let found = fit_at(Kernel::Rbf, &envelope, u64::from(replicate), &[time]).predictions[0];
-            // Student's t with some 27 degrees of freedom.
+            // Quantile of Student's t with about 27 degrees of freedom.
             (fresh - found.log_amplitude).abs() <= 2.052 * found.std_error.unwrap()
         })
         .count();
     let share = held as f64 / f64::from(replicates);
-    // Four standard deviations of such a share.
+    // The bounds are four standard deviations of such a share.
     assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(replicates)).sqrt(), "{share}");
 }

@@ -1,4 +1,4 @@
-//! The network that learns to read envelopes in general.
+//! Amortized network: trained on simulated envelopes, applied to measured ones.
 
 use crate::config::{HIDDEN_UNITS, INITIAL_SCALE};
 use crate::network::{Network, Size};
@@ -11,16 +11,16 @@ use seed::Seed;
 use serde::Deserialize;
 use settings::Field;
 
-/// The network's own settings; those of its training are [`neural::amortized::fields`].
+/// Settings of the network; those of its training are [`neural::amortized::fields`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct AmortizedLstmConfig {
-    /// Units of the hidden state, and of the cell.
+    /// Number of units of the hidden state, and of the cell.
     pub hidden_units: usize,
-    /// Factor on the drawn start values of the gates' weights.
+    /// Factor on the random start values of the gates' weights.
     pub initial_scale: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 const FIELDS: &[Field] = &[
     Field { source: "within 4 % of least squares over fresh envelopes; 24 are no nearer", ..HIDDEN_UNITS },
     fields::LONGEST_SEQUENCE,
@@ -39,7 +39,7 @@ const FIELDS: &[Field] = &[
     fields::BEND,
 ];
 
-/// The registry's line of the network that is trained on simulated envelopes.
+/// Registry entry of the network that is trained on simulated envelopes.
 pub const AMORTIZED_ENTRY: Entry = Entry {
     id: "lstm-amortized",
     paper_number: None,
@@ -59,20 +59,20 @@ pub const AMORTIZED_ENTRY: Entry = Entry {
     },
 };
 
-/// The network of [`ENTRY`](crate::ENTRY), reading where in the record it is.
+/// Network of [`ENTRY`](crate::ENTRY) whose input includes the position in the record.
 ///
-/// Trained on one envelope, the network may know how many peaks there are; here it has to be told.
+/// A network trained on one envelope may learn the number of peaks; here the input has to contain it.
 #[derive(Module, Debug)]
 pub struct Reader {
     network: Network,
 }
 
-/// Features of an entry.
+/// Number of features of an entry.
 const FEATURES: usize = 4;
 
 impl Encoder for Reader {
-    /// (s, ln Δ, z, its change): the entry's time, the logarithm of the mean time between entries, the
-    /// value, and its change since the entry before, which tells scatter from a bend.
+    /// Returns (s, ln Δ, z, Δz) of each entry: its time, the logarithm of the mean time between entries, its
+    /// value, and the change of the value since the previous entry, which distinguishes scatter from a bend.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);

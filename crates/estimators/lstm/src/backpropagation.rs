@@ -1,10 +1,11 @@
-//! The recurrence forward and back, on plain matrices.
+//! Forward and backward pass of the recurrence, on plain matrices.
 //!
-//! burn keeps dozens of small operations for every peak, each with a tensor of its own; at 69 peaks nine tenths of a
-//! training's time went into these, forward and on the tape, which besides grows more than linearly with the length. Here
-//! the whole recurrence is one operation: the four gates of a unit stand side by side in one matrix, the states of the
-//! forward pass are kept, and the adjoint goes back over them. The network itself, its parameters and its file, stays
-//! burn's; a test holds both against burn's own LSTM and tape.
+//! burn records dozens of small operations for every peak, each with its own tensor. At 69 peaks they took
+//! nine tenths of the training time, in the forward pass and on the tape, and the time on the tape grows more
+//! than linearly with the length. Here the whole recurrence is one operation: the four gates of a unit are
+//! adjacent rows of one matrix, the states of the forward pass are stored, and the adjoint is propagated back
+//! over them. The network itself, with its parameters and its file, remains burn's; a test compares both
+//! passes with burn's own LSTM and tape.
 //!
 //! Reference: Werbos, Proceedings of the IEEE 78 (1990) 1550; for the cell with its forget gate Gers,
 //! Schmidhuber, Cummins, Neural Computation 12 (2000) 2451.
@@ -18,30 +19,31 @@ use neural::values;
 /// Gates of a unit, in the order of burn's parameters: input, forget, output, candidate.
 const GATES: usize = 4;
 
-/// A forward pass with its states. A matrix with a column for each entry holds the first entries of all sequences, then the
-/// second ones, and so on; its rows are units, or the four gates of the first unit, of the second, and so on.
+/// Forward pass with its states. In a matrix with one column per entry, the first entries of all sequences
+/// come first, then the second ones, and so on. Its rows are units, or the four gates of the first unit, then
+/// of the second, and so on.
 pub(crate) struct Passed {
     units: usize,
     sequences: usize,
-    /// Features by entries.
+    /// Input features: features by entries.
     inputs: DMatrix<f64>,
-    /// Gates by units: what each gate takes from the hidden state.
+    /// Weights of the gates on the hidden state: gates by units.
     from_hidden: DMatrix<f64>,
-    /// Values of the gates, σ(p) and for the candidate tanh(p): gates by entries.
+    /// Values of the gates, σ(p), and tanh(p) for the candidate: gates by entries.
     gates: DMatrix<f64>,
-    /// Hidden states, units by entries, those before the first entry first.
+    /// Hidden states: units by entries, starting with the states before the first entry.
     hidden: DMatrix<f64>,
-    /// Cells, as the hidden states.
+    /// Cells, in the layout of the hidden states.
     cells: DMatrix<f64>,
 }
 
-/// A tensor whose last axis are the rows.
+/// Converts a tensor to a matrix; the tensor's last axis becomes the rows.
 fn columns<const D: usize>(tensor: Tensor<D>, rows: usize) -> Result<DMatrix<f64>, FitError> {
     let values = values(tensor)?;
     Ok(DMatrix::from_vec(rows, values.len() / rows.max(1), values))
 }
 
-/// The sum of the biases of a gate's two transforms, one for each unit.
+/// Returns the sum of the biases of a gate's two transforms, one per unit.
 fn biases(gate: &GateController, units: usize) -> Result<Vec<f64>, FitError> {
     let mut sums = vec![0.0; units];
     for own in [&gate.input_transform.bias, &gate.hidden_transform.bias].into_iter().flatten() {
@@ -55,10 +57,10 @@ fn sigmoid(x: f64) -> f64 {
 }
 
 impl Passed {
-    /// Reads `inputs` of shape sequences × entries × features.
+    /// Runs the forward pass on `inputs` of shape sequences × entries × features.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where the LSTM has no forget gate or a tensor does not hold doubles.
+    /// [`FitError::Backend`] if the LSTM has no forget gate or a tensor does not hold doubles.
     pub(crate) fn forward(lstm: &Lstm, inputs: Tensor<3>) -> Result<Self, FitError> {
         let [sequences, entries, features] = inputs.dims();
         let units = lstm.d_hidden;
@@ -88,7 +90,7 @@ impl Passed {
         Ok(passed)
     }
 
-    /// c = f·c₋ + i·g, h = o·tanh c for the entries in the columns from `first` on.
+    /// Computes c = f·c₋ + i·g, h = o·tanh c for the entries in the columns from `first` on.
     fn step(&mut self, first: usize) {
         let mut sums = self.gates.columns_mut(first, self.sequences);
         sums.gemm(1.0, &self.from_hidden, &self.hidden.columns(first, self.sequences), 1.0);
@@ -109,19 +111,20 @@ impl Passed {
         }
     }
 
-    /// The last hidden states, sequence by sequence.
+    /// Returns the last hidden states, sequence by sequence.
     pub(crate) fn last(&self) -> Vec<f64> {
         let first = self.hidden.ncols() - self.sequences;
         self.hidden.columns(first, self.sequences).iter().copied().collect()
     }
 
-    /// Derivatives with respect to the LSTM's parameters, in the order of the flat list, of a result whose derivatives
-    /// with respect to the last hidden states are `by_last`, sequences × units. With δ the adjoints,
+    /// Returns the derivatives of a result with respect to the LSTM's parameters, in the order of the flat
+    /// list. `by_last`, sequences × units, are the derivatives of the result with respect to the last hidden
+    /// states. With δ the adjoints,
     ///
     /// δc = δc₊·f₊ + δh·o·(1 − tanh²c), δh = Σ Uᵀδp₊.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where the tensor does not hold doubles.
+    /// [`FitError::Backend`] if the tensor does not hold doubles.
     pub(crate) fn backpropagate(&self, by_last: Tensor<2>) -> Result<Vec<f64>, FitError> {
         let (units, sequences) = (self.units, self.sequences);
         let mut by_hidden = columns(by_last, units)?;
@@ -149,7 +152,7 @@ impl Passed {
         Ok(self.gradient(&adjoint))
     }
 
-    /// The input's weights and biases of a gate, then the hidden state's, gate by gate.
+    /// Returns the gradient gate by gate: the input's weights and biases, then those of the hidden state.
     fn gradient(&self, adjoint: &DMatrix<f64>) -> Vec<f64> {
         let by_inputs = adjoint * self.inputs.transpose();
         let by_hidden = adjoint * self.hidden.columns(0, adjoint.ncols()).transpose();
@@ -166,7 +169,8 @@ impl Passed {
     }
 }
 
-/// Adjoints of a unit's sums, and of its cell one entry earlier, from those of its hidden state and its cell.
+/// Returns the adjoints of a unit's sums, and of its cell one entry earlier, from those of its hidden state
+/// and its cell.
 fn back(
     [input, forget, output, candidate]: [f64; GATES],
     [before, cell]: [f64; 2],
@@ -197,7 +201,7 @@ mod tests {
         let recording = device().unwrap().autodiff();
         for (sequences, entries, units) in [(1, 1, 3), (1, 7, 1), (1, 40, 5), (2, 1, 1), (3, 8, 4)] {
             let network = Network::zeros(Size { features: 2, units, says: 2 }, &device().unwrap());
-            // Every parameter is something else, biases included.
+            // All parameters differ, including the biases.
             let start = network.draw(1.0, &mut StdRng::seed_from_u64(8)).unwrap();
             let start: Vec<f64> =
                 start.iter().enumerate().map(|(at, x)| x + 0.3 * (at as f64).sin()).collect();

@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
@@ -6,21 +6,21 @@ use settings::{Default, Field, Kind};
 /// Settings of the long short-term memory network. The ranges and defaults are in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct LstmConfig {
-    /// Units of the hidden state, and of the cell.
+    /// Number of units of the hidden state, and of the cell.
     pub hidden_units: usize,
-    /// Most entries the network reads.
+    /// Most entries that the network reads.
     pub longest_sequence: usize,
     /// Most L-BFGS steps.
     pub max_steps: u64,
-    /// Curvature pairs L-BFGS remembers.
+    /// Number of curvature pairs that L-BFGS stores.
     pub memory: usize,
-    /// Training has converged when the gradient has fallen to this share of its length at the start.
+    /// Share of its initial length to which the gradient has to fall for the training to have converged.
     pub gradient_tolerance: f64,
-    /// Factor on the drawn start values of the gates' weights.
+    /// Factor on the random start values of the gates' weights.
     pub initial_scale: f64,
 }
 
-/// Units of the hidden state.
+/// Number of units of the hidden state.
 pub(crate) const HIDDEN_UNITS: Field = Field {
     key: "hidden_units",
     kind: Kind::Integer { min: 1, max: 256 },
@@ -30,7 +30,7 @@ pub(crate) const HIDDEN_UNITS: Field = Field {
     source: "1 to 64 agree to rounding, 16 in the fewest steps or nearly",
 };
 
-/// Factor on the drawn start values.
+/// Factor on the random start values.
 pub(crate) const INITIAL_SCALE: Field = Field {
     key: "initial_scale",
     kind: Kind::Float { min: 1e-3, max: 10.0 },
@@ -40,7 +40,7 @@ pub(crate) const INITIAL_SCALE: Field = Field {
     source: "Glorot, Bengio 2010",
 };
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     HIDDEN_UNITS,
     Field {

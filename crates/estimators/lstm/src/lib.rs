@@ -1,17 +1,16 @@
 //! Long short-term memory network that reads the envelope.
 //!
-//! burn's LSTM reads the peaks one after the other, each as the time since the one before and its ln A.
-//! A linear head without a bias says a level and a decay rate from the last hidden state; the decoder is
-//! physics, ln A(t) = ln A₀ − λt, and the loss the mean squared error of the peaks it reconstructs. λ is
-//! the decoder's. Training is by L-BFGS on all weights from random start values; Adam takes hundreds of
-//! steps to the same digits.
+//! burn's LSTM reads the peaks one after the other, each as its ln A and the time since the previous peak. A
+//! linear head without a bias computes a level and a decay rate from the last hidden state. The decoder is
+//! the physical law ln A(t) = ln A₀ − λt, and the loss is the mean squared error of the reconstructed peaks.
+//! λ is the decoder's. All weights are trained by L-BFGS from random start values; Adam needs hundreds of
+//! steps for the same digits.
 //!
-//! The network is trained on the one envelope it is asked about, so that its weights hold an answer, not
-//! a skill. Its minimum is the exponential that fits best in the sense of least squares, and there it
-//! arrives to the last digits.
+//! The network is trained on the one envelope that it has to fit, so that its weights hold an answer and not
+//! a general skill. Its minimum is the least-squares exponential, which it reaches to the last digits.
 //!
-//! [`AMORTIZED_ENTRY`] is the same network with a skill instead: trained on simulated envelopes only, then
-//! shown one it never saw ([`neural::amortized`]).
+//! [`AMORTIZED_ENTRY`] is the same network as an amortized estimator: trained on simulated envelopes only,
+//! then applied to an envelope it never saw ([`neural::amortized`]).
 //!
 //! Reference: Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735; the forget gate: Gers,
 //! Schmidhuber, Cummins, Neural Computation 12 (2000) 2451.
@@ -31,7 +30,7 @@ pub use config::LstmConfig;
 
 use estimator::{Entry, Estimator, Tag};
 
-/// The registry's line.
+/// Registry entry of the network trained on one envelope.
 pub const ENTRY: Entry = Entry {
     id: "lstm",
     paper_number: Some(15),

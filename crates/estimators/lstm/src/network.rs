@@ -1,4 +1,4 @@
-//! The network.
+//! Network: burn's LSTM with a linear head.
 
 use crate::backpropagation::Passed;
 use burn::module::Module;
@@ -9,24 +9,25 @@ use neural::{Differentiated, Encoder, NamedTensor, Sequence, flat_gradient, name
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// What a network is built for.
+/// Dimensions of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Size {
-    /// Features of an entry of the sequence.
+    /// Number of features of an entry of the sequence.
     pub(crate) features: usize,
-    /// Units of the hidden state, and of the cell.
+    /// Number of units of the hidden state, and of the cell.
     pub(crate) units: usize,
-    /// Numbers that it says.
+    /// Number of outputs.
     pub(crate) says: usize,
 }
 
-/// Features of an entry, and numbers said, where a network is trained on the one envelope it reads.
+/// Number of features of an entry, and of outputs, for a network that is trained on the one envelope it
+/// reads.
 const FEATURES: usize = 2;
 const SAID: usize = 2;
 
-/// burn's LSTM and a linear head on its last hidden state.
+/// Network of burn's LSTM and a linear head on its last hidden state.
 ///
-/// The head has no bias: whatever the network says comes from what it has read.
+/// The head has no bias, so that every output depends on the input.
 #[derive(Module, Debug)]
 pub(crate) struct Network {
     lstm: Lstm,
@@ -34,7 +35,7 @@ pub(crate) struct Network {
 }
 
 impl Network {
-    /// A network of the given size, all of it zero.
+    /// Creates a network of the given size, with all parameters zero.
     pub(crate) fn zeros(size: Size, device: &Device) -> Self {
         Self {
             lstm: LstmConfig::new(size.features, size.units, true)
@@ -47,16 +48,17 @@ impl Network {
         }
     }
 
-    /// A network that says a level and a rate of the one envelope it is trained on, all of it zero.
+    /// Creates a network that outputs level and rate of the one envelope it is trained on, with all
+    /// parameters zero.
     pub(crate) fn for_one_envelope(units: usize, device: &Device) -> Self {
         Self::zeros(Size { features: FEATURES, units, says: SAID }, device)
     }
 
-    /// Start values in the order of the flat list.
+    /// Draws start values in the order of the flat list.
     ///
-    /// Weights normal with variance 2/(inputs + outputs) (Glorot, Bengio, AISTATS 2010) times `scale`;
-    /// biases zero, but one for the forget gate, which so begins by remembering (Gers, Schmidhuber,
-    /// Cummins, Neural Computation 12 (2000) 2451). The head's weights are uniform within
+    /// Weights are normal with variance 2/(inputs + outputs) (Glorot, Bengio, AISTATS 2010), times `scale`.
+    /// Biases are zero, except one for the forget gate, which therefore starts by remembering (Gers,
+    /// Schmidhuber, Cummins, Neural Computation 12 (2000) 2451). The head's weights are uniform within
     /// ±1/(2·hidden units); since no hidden state exceeds 1, the untrained rate lies in −0.5..0.5.
     pub(crate) fn draw(&self, scale: f64, generator: &mut impl Rng) -> Result<Vec<f64>, FitError> {
         let mut drawn = Vec::new();
@@ -82,7 +84,8 @@ impl Network {
 }
 
 impl Encoder for Network {
-    /// (Δs, z): the time since the entry before in units of the mean interval, 0 for the first, and z.
+    /// Returns (Δs, z) of each entry: the time since the previous entry in units of the mean interval, 0 for
+    /// the first, and z.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
@@ -101,7 +104,8 @@ impl Encoder for Network {
         self.head.forward(last.hidden)
     }
 
-    /// The tape begins at the last hidden state; what comes before goes by [`Passed`], on plain matrices.
+    /// The tape starts at the last hidden state; [`Passed`] handles the recurrence before it, on plain
+    /// matrices.
     fn differentiate(
         &self,
         input: Tensor<3>,
@@ -149,8 +153,9 @@ mod tests {
         }
     }
 
-    /// i, f, o = σ(W·x + U·h + b), g = tanh(W·x + U·h + b), c = f·c + i·g, h = o·tanh(c): Hochreiter,
-    /// Schmidhuber 1997 with the forget gate of Gers et al. 2000, by hand for one unit.
+    /// The equations are i, f, o = σ(W·x + U·h + b), g = tanh(W·x + U·h + b), c = f·c + i·g, h = o·tanh(c):
+    /// Hochreiter, Schmidhuber 1997 with the forget gate of Gers et al. 2000. They are computed by hand for
+    /// one unit.
     #[test]
     fn it_is_a_long_short_term_memory() {
         let network = network(1);

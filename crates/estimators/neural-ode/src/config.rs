@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
@@ -8,21 +8,21 @@ use settings::{Default, Field, Kind};
 pub struct NeuralOdeConfig {
     /// Widths of the vector field's hidden layers.
     pub hidden: Vec<usize>,
-    /// Steps of the ODE solver over the record.
+    /// Number of steps of the ODE solver over the record.
     pub solver_steps: usize,
     /// Weight of the trajectory's mean squared second derivative, scaled.
     pub curvature_weight: f64,
-    /// Weight of the sum of the squared weights that a line added to ln A leaves alone.
+    /// Weight of the sum of squares of those weights that do not change when a line is added to ln A.
     pub weight_decay: f64,
     /// Most Levenberg–Marquardt steps.
     pub max_steps: u64,
-    /// Training has converged when a step lowers the loss by a smaller share of itself than this.
+    /// Relative decrease of the loss in one step below which the training has converged.
     pub loss_tolerance: f64,
-    /// Factor on the drawn start values.
+    /// Factor on the random start values.
     pub initial_scale: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "hidden",

@@ -1,4 +1,4 @@
-//! The vector field: a network on burn, with exact derivatives.
+//! Vector field: a network on burn, with exact derivatives.
 
 use burn::module::{Module, Param};
 use burn::nn::{Linear, LinearConfig};
@@ -9,28 +9,29 @@ use neural::{NamedTensor, tensor, values};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// f(y, s) = c + net(y, s): a perceptron of the state and the time with tanh between its layers, all
-/// scaled. The bias of its last layer is c, the constant part, whose trajectory is a line.
+/// Vector field f(y, s) = c + net(y, s): a perceptron of the state and the time with tanh between its layers,
+/// all scaled. The bias of its last layer is c, the constant part, whose trajectory is a line.
 ///
-/// tanh bounds it: |f| is at most |c| and the sum of the last layer's absolute weights, so every
-/// trajectory exists for all times.
+/// The tanh bounds the field: |f| is at most |c| plus the sum of the last layer's absolute weights, so that
+/// every trajectory exists for all times.
 ///
-/// Parameters in a flat list: for each layer the weights by input (y before s), then the biases.
+/// The parameters in the flat list are, for each layer, the weights by input (y before s) and then the
+/// biases.
 #[derive(Module, Debug)]
 pub(crate) struct VectorField {
     layers: Vec<Linear>,
 }
 
-/// What the field depends on at a point.
+/// Derivatives of the field at several points.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Partials {
-    /// ∂f/∂y, one for each point.
+    /// ∂f/∂y, one value per point.
     pub(crate) by_state: Vec<f64>,
     /// ∂f/∂parameters, parameters by points.
     pub(crate) by_parameters: DMatrix<f64>,
 }
 
-/// Sizes of a layer.
+/// Dimensions of a layer.
 #[derive(Debug, Clone, Copy)]
 struct Size {
     inputs: usize,
@@ -44,22 +45,23 @@ fn sizes(hidden: &[usize]) -> Vec<Size> {
 }
 
 impl VectorField {
-    /// Number of parameters of a field with the given hidden widths.
+    /// Returns the number of parameters of a field with the given hidden widths.
     pub(crate) fn parameter_count(hidden: &[usize]) -> usize {
         sizes(hidden).iter().map(|size| (size.inputs + 1) * size.outputs).sum()
     }
 
-    /// Positions of the parameters that may be drawn to zero: all but those that change where a line is
-    /// added to the trajectory, which are the first layer's weights of time, its biases, and c.
+    /// Returns the positions of the parameters that are subject to weight decay. These are all but the ones
+    /// that change when a line is added to the trajectory: the first layer's weights of time, its biases, and
+    /// c.
     pub(crate) fn decayed(hidden: &[usize]) -> Vec<usize> {
-        // Without a hidden layer no parameter is drawn to zero.
+        // Without a hidden layer no parameter is subject to weight decay.
         let width = hidden.first().copied().unwrap_or_default();
         let count = Self::parameter_count(hidden);
         (0..width).chain(3 * width..count.saturating_sub(1)).collect()
     }
 
-    /// Start values drawn from a generator: weights normal with variance 2/(inputs + outputs) (Glorot,
-    /// Bengio, AISTATS 2010), biases normal; all times `scale`.
+    /// Draws start values: weights normal with variance 2/(inputs + outputs) (Glorot, Bengio, AISTATS 2010),
+    /// biases normal; all times `scale`.
     pub(crate) fn draw_parameters(hidden: &[usize], scale: f64, generator: &mut impl Rng) -> Vec<f64> {
         let mut normal = || -> f64 { scale * Distribution::<f64>::sample(&StandardNormal, generator) };
         let mut parameters = Vec::with_capacity(Self::parameter_count(hidden));
@@ -71,7 +73,7 @@ impl VectorField {
         parameters
     }
 
-    /// The field with given hidden widths and parameters.
+    /// Creates the field with given hidden widths and parameters.
     pub(crate) fn from_parameters(
         hidden: &[usize],
         parameters: &[f64],
@@ -101,7 +103,7 @@ impl VectorField {
         Ok(Self { layers })
     }
 
-    /// Values at points of shape points × 2 (state, time); shape points × 1.
+    /// Evaluates the field at points of shape points × 2 (state, time); the result has the shape points × 1.
     pub(crate) fn forward(&self, points: Tensor<2>) -> Tensor<2> {
         let last = self.layers.len().saturating_sub(1);
         self.layers.iter().enumerate().fold(points, |input, (at, layer)| {
@@ -110,18 +112,19 @@ impl VectorField {
         })
     }
 
-    /// The value at one point.
+    /// Evaluates the field at one point.
     pub(crate) fn at(&self, state: f64, time: f64, device: &Device) -> Result<f64, FitError> {
         let value = values(self.forward(tensor(vec![state, time], [1, 2], device)))?;
         value.first().copied().ok_or_else(|| FitError::Backend { problem: "an empty tensor".to_owned() })
     }
 
-    /// Exact derivatives at many points (state, time) by one backward pass.
+    /// Returns exact derivatives at many points (state, time) by one backward pass.
     ///
-    /// A zero is added to every layer's sums, point by point: the tap. The points do not interact, so
-    /// the gradient of the sum of all values with respect to a tap holds, at each point, that point's
-    /// own derivative with respect to its sums; times the layer's input it is the point's derivative
-    /// with respect to the weights, and through the first layer's weights that to the state.
+    /// A zero, the tap, is added to every layer's sums at each point. The points do not interact, so that the
+    /// gradient of the sum of all values with respect to a tap holds, at each point, that point's own
+    /// derivative with respect to its sums. Multiplied by the layer's input it is the derivative with respect
+    /// to the weights, and multiplied by the first layer's weights it is the derivative with respect to the
+    /// state.
     pub(crate) fn partials(&self, points: &[[f64; 2]], device: &Device) -> Result<Partials, FitError> {
         let recording = device.clone().autodiff();
         let network = self.clone().fork(&recording);
@@ -137,7 +140,7 @@ impl VectorField {
             input = if at < last { sums.tanh() } else { sums };
         }
         let gradients = input.sum().backward();
-        // Rows of burn's tensors are the points, hence columns here.
+        // Rows of burn's tensors are the points, which are columns here.
         let by_points = |tensor: Tensor<2>| -> Result<DMatrix<f64>, FitError> {
             let [rows, columns] = tensor.dims();
             Ok(DMatrix::from_vec(columns, rows, values(tensor)?))
@@ -167,7 +170,7 @@ impl VectorField {
         Ok(Partials { by_state, by_parameters })
     }
 
-    /// The weights by name, for a file.
+    /// Returns the weights by name, for a file.
     pub(crate) fn named_tensors(&self) -> Result<Vec<NamedTensor>, FitError> {
         let mut tensors = Vec::new();
         for (at, layer) in self.layers.iter().enumerate() {
@@ -210,7 +213,7 @@ mod tests {
         values(field.forward(tensor(points.as_flattened().to_vec(), [points.len(), 2], &device))).unwrap()
     }
 
-    /// Fourth-order central difference.
+    /// Returns a fourth-order central difference.
     fn difference(f: impl Fn(f64) -> f64) -> f64 {
         let h = 1e-3;
         (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)

@@ -1,4 +1,4 @@
-//! Training.
+//! Training of the vector field.
 
 use crate::config::NeuralOdeConfig;
 use crate::field::VectorField;
@@ -14,7 +14,7 @@ use neural::{
 use rand_distr::{Distribution, StandardNormal};
 use std::ops::ControlFlow;
 
-/// Fewest peaks that tell a bend from a line.
+/// Fewest peaks with which a bend can be told from a line.
 const FEWEST_PEAKS: usize = 3;
 
 impl Estimator for NeuralOdeConfig {
@@ -35,13 +35,13 @@ impl Estimator for NeuralOdeConfig {
             max_steps: context.step_limit(self.max_steps),
             loss_tolerance: self.loss_tolerance,
         };
-        // λ of the state in force: a rejected step leaves both as they were.
+        // λ of the current state: a rejected step leaves both unchanged.
         let mut told: Option<(DVector<f64>, f64)> = None;
         let minimum = method.minimize_resumably(&objective, self.start(context), context, |state| {
             let known = told.take().filter(|(of, _)| of == state.parameters);
             let decay_rate = known.map_or_else(
                 || {
-                    // This state has just been solved: nothing can fail that has not failed before.
+                    // This state has just been solved, so that it cannot fail here.
                     let fitted = objective.fitted(state.parameters).unwrap_or_default();
                     scaling.rate_per_centered_time(-objective.projected_slope(&fitted))
                 },
@@ -65,15 +65,15 @@ impl Estimator for NeuralOdeConfig {
 }
 
 impl NeuralOdeConfig {
-    /// Start values: the field's, then the initial state, normal. In scaled units an envelope that is
-    /// nearly a line has a slope of about 1.7: a drawn field is not the answer.
+    /// Draws the start values: those of the field, then the initial state, which is normal. In scaled units
+    /// an envelope that is nearly a line has a slope of about 1.7, so that a drawn field is not the answer.
     fn start(&self, context: &FitContext<'_>) -> DVector<f64> {
         let mut generator = context.seed("initial weights").generator();
         let mut parameters = VectorField::draw_parameters(&self.hidden, self.initial_scale, &mut generator);
         let normal: f64 = StandardNormal.sample(&mut context.seed("initial state").generator());
         parameters.push(self.initial_scale * normal);
         if context.is_at_zero() {
-            // The constant part c and the initial state stay.
+            // The constant part c and the initial state keep their values.
             let held = parameters.len().saturating_sub(BESIDE);
             parameters.iter_mut().take(held).for_each(|weight| *weight = 0.0);
         }
@@ -94,7 +94,7 @@ fn describe(
     let linearized = objective.linearize(&minimum.parameters)?;
     let stop = LevenbergMarquardt::stop(minimum);
     let laplace = match stop.reached {
-        // Away from the minimum the loss has no such shape.
+        // Away from the minimum the Laplace approximation does not hold.
         Reached::Converged => laplace(objective, &linearized),
         _ => None,
     };
@@ -107,7 +107,7 @@ fn describe(
     tensors.push(NamedTensor { name: "initial_state".to_owned(), shape: vec![1], values: vec![initial] });
     Ok(Estimate {
         decay_rate,
-        // The trajectory's own start: the envelope's time is zero at the first peak.
+        // The trajectory's own start, since the envelope's time is zero at the first peak.
         log_amplitude: fitted.first().copied().unwrap_or(f64::NAN),
         uncertainty,
         stop,
@@ -120,13 +120,14 @@ fn describe(
     })
 }
 
-/// Laplace approximation about the trained parameters, the curvature and weight terms acting as a prior.
+/// Computes the Laplace approximation about the trained parameters, with the curvature and weight terms as a
+/// prior.
 ///
-/// The residual variance is the residual sum of squares over n − 2·tr H + tr H², with H = JA⁻¹Jᵀ the map
-/// from data to fitted values: the expectation of that sum for a linear smoother, so that a trajectory
-/// that bends pays for it. On a bent envelope the interval of λ is narrower than a line's, which takes the bend
-/// for scatter: it is one for the slope of the line through the bent function. `None` where less than one
-/// degree of freedom is left.
+/// The residual variance is the residual sum of squares over n − 2·tr H + tr H², with H = JA⁻¹Jᵀ the map from
+/// data to fitted values. This is the expectation of that sum for a linear smoother, so that a more flexible
+/// trajectory has fewer degrees of freedom. On a bent envelope the interval of λ is narrower than a line's,
+/// which treats the bend as scatter; it is an interval for the slope of the line through the bent function.
+/// `None` if less than one degree of freedom is left.
 ///
 /// Reference: Hastie, Tibshirani, Generalized Additive Models (Chapman and Hall 1990), section 3.5.
 fn laplace(objective: &Objective<'_>, linearized: &Linearized) -> Option<Laplace> {
@@ -135,7 +136,7 @@ fn laplace(objective: &Objective<'_>, linearized: &Linearized) -> Option<Laplace
     })
 }
 
-/// The field followed to the times asked about; NaN where they are too far off.
+/// Follows the field to the query times; NaN where they are too far away.
 fn predictions(
     scaling: &Scaling,
     objective: &Objective<'_>,

@@ -1,31 +1,29 @@
 //! Neural ordinary differential equation for the envelope.
 //!
-//! A network is the vector field of y = ln A, in scaled units: y′ = f(y, s) = c + net(y, s), from a
-//! trainable initial state y(−1). The classical Runge–Kutta method solves it, and what is trained is the
-//! numerical solution: Levenberg–Marquardt on its exact Jacobian, which the solver's own arithmetic,
-//! differentiated, gives from one batched backward pass over all its stages.
+//! A network is the vector field of y = ln A in scaled units, y′ = f(y, s) = c + net(y, s), with a trainable
+//! initial state y(−1). The classical Runge–Kutta method solves it, and the numerical solution is trained by
+//! Levenberg–Marquardt on its exact Jacobian. The Jacobian is the derivative of the solver's own arithmetic,
+//! from one batched backward pass over all its stages.
 //!
-//! The field knows the time besides the state, so that damping may change with amplitude and drift with
-//! time; one trajectory cannot tell which, and none is claimed. A field of the state alone could draw
-//! monotonic trajectories only, and would bias λ. The constant part c is the affine skip: its trajectory
-//! is a line, an exponential decay.
+//! The field depends on the time besides the state, so that damping may change with amplitude and drift with
+//! time. One trajectory cannot tell these apart, and the method does not claim to. A field of the state alone
+//! could only have monotonic trajectories, and would bias λ. The constant part c is the affine skip: its
+//! trajectory is a line, an exponential decay.
 //!
-//! A field this flexible would run after the scatter of the peaks. Two terms hold it back: the
-//! trajectory's mean squared second derivative, which is what makes a smoothing spline smooth and a
-//! neural ODE easy to solve, and weight decay, without which weights grow without end for gains in the
-//! loss that mean nothing.
+//! A field this flexible would follow the scatter of the peaks. Two terms limit it: the trajectory's mean
+//! squared second derivative, which makes a smoothing spline smooth and a neural ODE easy to solve; and
+//! weight decay, without which weights grow without end for insignificant gains in the loss.
 //!
-//! λ is minus the slope of the least-squares line through the trained trajectory's values at the peaks:
-//! a property of the fitted function. It agrees with the slope of the line through the peaks themselves
-//! wherever training has converged, by this argument. y + a + b·s solves the field whose first layer sees
-//! y − a − b·s and whose c is larger by b; so a line added to the trajectory is a change of parameters,
-//! for the numerical solution too. It changes no second derivative, and the weights it changes are left
-//! out of the decay. Hence at a stationary point the residuals are orthogonal to 1 and to t, and what
-//! they leave out of the trajectory has no slope. The start knows nothing of that: an untrained field is
-//! wrong.
+//! λ is minus the slope of the least-squares line through the trained trajectory's values at the peaks: a
+//! property of the fitted function. After convergence it agrees with the slope of the line through the peaks
+//! themselves, for the following reason. y + a + b·s solves the field whose first layer receives y − a − b·s
+//! and whose c is larger by b. So a line added to the trajectory is a change of parameters, for the numerical
+//! solution too. It changes no second derivative, and the weights that it changes are not subject to the
+//! decay. Hence at a stationary point the residuals are orthogonal to 1 and to t, and have no slope. This
+//! does not hold at the start: an untrained field is wrong.
 //!
-//! Predictions go on with the field: beyond the last peak and before the first one, where nothing held it but
-//! weight decay. Their standard deviation is a Laplace approximation's.
+//! Predictions follow the field beyond the last peak and before the first one, where only weight decay limits
+//! it. Their standard deviation is that of a Laplace approximation.
 //!
 //! References: Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 31 (2018), equation 2 (the model); Kelly,
 //! Bettencourt, Johnson, Duvenaud, NeurIPS 33 (2020), section 3 (the derivative of order K as a
@@ -47,7 +45,7 @@ use estimator::{Entry, Estimator, Tag};
 use field::VectorField;
 use neural::check_memory;
 
-/// The registry's line.
+/// Registry entry of the neural ODE.
 pub const ENTRY: Entry = Entry {
     id: "neural-ode",
     paper_number: Some(14),
@@ -65,7 +63,8 @@ pub const ENTRY: Entry = Entry {
     fields: config::FIELDS,
     build: |settings| {
         let config: NeuralOdeConfig = settings.section("estimator")?;
-        // The initial state beside the field's. How many peaks there are shows only later, and they are few.
+        // The initial state counts besides the field's parameters. The number of peaks is not known yet, but
+        // it is small.
         check_memory(settings, VectorField::parameter_count(&config.hidden) + 1, 0)?;
         Ok(Box::new(config) as Box<dyn Estimator>)
     },

@@ -1,4 +1,4 @@
-//! The loss as a sum of squares.
+//! Loss as a sum of squares.
 
 use crate::config::NeuralOdeConfig;
 use crate::field::VectorField;
@@ -10,41 +10,41 @@ use neural::{LeastSquares, Linearized};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// mean over the peaks of (y(sᵢ) − zᵢ)² + w · mean over the half steps of (y″)² + d · Σ p², in scaled
-/// units: y the numerical solution, w the curvature weight, d the weight decay, the last sum over the
-/// parameters that a line added to the trajectory leaves alone
-/// ([`decayed`](VectorField::decayed)). Parameters: those of the field, then the initial state y(−1).
+/// Loss: mean over the peaks of (y(sᵢ) − zᵢ)² + w · mean over the half steps of (y″)² + d · Σ p², in scaled
+/// units. Here y is the numerical solution, w the curvature weight and d the weight decay; the last sum is
+/// over the parameters that do not change when a line is added to the trajectory
+/// ([`decayed`](VectorField::decayed)). The parameters are those of the field, then the initial state y(−1).
 pub(crate) struct Objective<'a> {
     config: &'a NeuralOdeConfig,
     device: &'a Device,
     targets: &'a [f64],
     places: Vec<Place>,
-    /// Each peak's share in the slope of the least-squares line through values at the peaks.
+    /// Weight of each peak in the slope of the least-squares line through values at the peaks.
     slope_shares: Vec<f64>,
     decayed: Vec<usize>,
-    /// A solution takes hundreds of passes one after the other: the last one is kept, because an
-    /// accepted step asks for it three times.
+    /// Latest solution. A solution takes hundreds of sequential passes, and an accepted step asks for it
+    /// three times.
     latest: RefCell<Option<(DVector<f64>, Rc<Trajectory>)>>,
-    /// The network is held at zero but for its constant part: an ablation.
+    /// `true` if the network is held at zero except for its constant part: an ablation.
     network_at_zero: bool,
 }
 
-/// Parameters that stand beside the network, the last ones: the constant part c and the initial state.
+/// Number of parameters outside the network, the last ones: the constant part c and the initial state.
 pub(crate) const BESIDE: usize = 2;
 
-/// The trained function at a time.
+/// Trained function at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Reading {
     pub(crate) value: f64,
-    /// Its derivatives by the parameters.
+    /// Derivatives of the value by the parameters.
     pub(crate) gradient: DVector<f64>,
 }
 
-/// How far the field is followed, in lengths of the record.
+/// Farthest time from the first peak to which the field is followed, in record lengths.
 pub(crate) const LONGEST: f64 = 100.0;
 
 impl<'a> Objective<'a> {
-    /// The loss for peaks at scaled times with scaled logarithms.
+    /// Creates the loss for peaks at scaled times with scaled logarithms.
     pub(crate) fn new(
         config: &'a NeuralOdeConfig,
         device: &'a Device,
@@ -66,12 +66,12 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// Number of peaks.
+    /// Returns the number of peaks.
     pub(crate) fn peaks(&self) -> usize {
         self.targets.len()
     }
 
-    /// The field and the initial state of a parameter vector.
+    /// Returns the field and the initial state of a parameter vector.
     pub(crate) fn model(&self, parameters: &DVector<f64>) -> Result<(VectorField, f64), FitError> {
         let (initial, weights) = parameters
             .as_slice()
@@ -80,7 +80,7 @@ impl<'a> Objective<'a> {
         Ok((VectorField::from_parameters(&self.config.hidden, weights, self.device)?, *initial))
     }
 
-    /// The numerical solution.
+    /// Returns the numerical solution.
     fn trajectory(&self, parameters: &DVector<f64>) -> Result<Rc<Trajectory>, FitError> {
         if let Some((of, trajectory)) = &*self.latest.borrow()
             && of == parameters
@@ -94,7 +94,7 @@ impl<'a> Objective<'a> {
         Ok(trajectory)
     }
 
-    /// The trained function at the peaks.
+    /// Returns the trained function at the peaks.
     pub(crate) fn fitted(&self, parameters: &DVector<f64>) -> Result<Vec<f64>, FitError> {
         Ok(self.at_peaks(&*self.trajectory(parameters)?))
     }
@@ -104,9 +104,9 @@ impl<'a> Objective<'a> {
         self.places.iter().map(|place| place.value(&nodes)).collect()
     }
 
-    /// The trained function and its derivatives by the parameters at scaled times in any order: the field
-    /// integrated with the steps of the record, on beyond its end and backward before its start. `None` for a
-    /// time farther than [`LONGEST`] records' lengths from the first peak.
+    /// Returns the trained function and its derivatives by the parameters at scaled times in any order. The
+    /// field is integrated with the steps of the record, forward beyond its end and backward before its
+    /// start. `None` for a time farther than [`LONGEST`] record lengths from the first peak.
     pub(crate) fn readings(
         &self,
         parameters: &DVector<f64>,
@@ -134,18 +134,18 @@ impl<'a> Objective<'a> {
         Ok(found)
     }
 
-    /// The slope of the least-squares line through values at the peaks.
+    /// Returns the slope of the least-squares line through values at the peaks.
     pub(crate) fn projected_slope<'b>(&self, values: impl IntoIterator<Item = &'b f64>) -> f64 {
         self.slope_shares.iter().zip(values).map(|(share, value)| share * value).sum()
     }
 
-    /// The derivative of the projected slope, from the rows of the Jacobian that belong to the peaks.
+    /// Returns the derivative of the projected slope, from the rows of the Jacobian that belong to the peaks.
     pub(crate) fn slope_gradient(&self, jacobian: &DMatrix<f64>) -> DVector<f64> {
         let shares = DVector::from_column_slice(&self.slope_shares);
         jacobian.rows(0, self.peaks()).tr_mul(&shares) / self.data_scale()
     }
 
-    /// What the rows of peaks are multiplied by.
+    /// Returns the factor of the residuals at the peaks.
     pub(crate) fn data_scale(&self) -> f64 {
         1.0 / (self.peaks() as f64).sqrt()
     }
@@ -186,7 +186,7 @@ impl LeastSquares for Objective<'_> {
     fn linearize(&self, parameters: &DVector<f64>) -> Result<Linearized, FitError> {
         let trajectory = self.trajectory(parameters)?;
         let (field, _) = self.model(parameters)?;
-        // The solver has found out where the stages are; now all their derivatives come in one pass.
+        // The solver has determined the stages; their derivatives now come from one pass.
         let stages: Vec<[f64; 2]> = trajectory.stages.iter().map(|at| [at.state, at.time]).collect();
         let sensitivities = trajectory.sensitivities(&field.partials(&stages, self.device)?);
         let mut transposed = DMatrix::zeros(parameters.len(), self.rows());
@@ -207,7 +207,7 @@ impl LeastSquares for Objective<'_> {
             }
         }
         if self.network_at_zero {
-            // A parameter without a derivative stays where it is.
+            // A parameter without a derivative keeps its value.
             transposed.rows_mut(0, parameters.len().saturating_sub(BESIDE)).fill(0.0);
         }
         Ok(Linearized { residuals: self.assemble(&trajectory, parameters), jacobian: transposed.transpose() })
@@ -251,7 +251,7 @@ mod tests {
         let objective = Objective::new(&config, &device, TIMES, TARGETS, false);
         let linearized = objective.linearize(&parameters).unwrap();
         assert_eq!(linearized.residuals, objective.residuals(&parameters).unwrap());
-        // Weights: 2·4 + 4·3 + 3, biases: 4 + 3 + 1, the initial state; all but 2·4 + 2 of them decay.
+        // Weights: 2·4 + 4·3 + 3, biases: 4 + 3 + 1, and the initial state; all but 2·4 + 2 of them decay.
         assert_eq!(linearized.jacobian.shape(), (TIMES.len() + 10 + 22, 32));
         let h = 1e-3;
         for column in 0..parameters.len() {
@@ -266,8 +266,8 @@ mod tests {
         }
     }
 
-    /// y + a + b·s solves the field whose first layer sees y − a − b·s and whose c is larger by b; the
-    /// solver does so to rounding, because its stages are consistent: Σⱼ aᵢⱼ = cᵢ.
+    /// y + a + b·s solves the field whose first layer receives y − a − b·s and whose c is larger by b. The
+    /// solver reproduces this to rounding, because its stages are consistent: Σⱼ aᵢⱼ = cᵢ.
     #[test]
     fn a_line_added_to_a_trajectory_is_a_change_of_parameters_that_costs_nothing() {
         let (device, config) = (device().unwrap(), config());

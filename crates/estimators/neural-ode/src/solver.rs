@@ -1,8 +1,8 @@
-//! The ODE solver: the classical Runge–Kutta method of order four on an even grid, dense output by
-//! cubic Hermite interpolation, and the derivatives of both with respect to parameters.
+//! ODE solver: the classical fourth-order Runge–Kutta method on an even grid, dense output by cubic Hermite
+//! interpolation, and the derivatives of both with respect to parameters.
 //!
-//! The grid does not depend on the peaks, so that a record with many of them costs no more to solve;
-//! values between the nodes come from the interpolant, which is of order four like the method.
+//! The grid does not depend on the peaks, so that a record with many peaks costs no more to solve. Values
+//! between the nodes come from the interpolant, which has order four like the method.
 //!
 //! Reference: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, 2nd ed. (Springer
 //! 1993), table II.1.2 (the method), section II.6 (dense output), section I.14 (derivatives).
@@ -10,40 +10,40 @@
 use crate::field::Partials;
 use nalgebra::DVector;
 
-/// Where the time starts, scaled; the record ends at 1.
+/// Scaled time of the start; the record ends at 1.
 pub(crate) const START: f64 = -1.0;
 
-/// A point where the solver asked for the vector field.
+/// Point at which the solver evaluates the vector field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stage {
     /// Scaled time.
     pub(crate) time: f64,
-    /// The state there.
+    /// State at that time.
     pub(crate) state: f64,
-    /// The field there.
+    /// Value of the field there.
     pub(crate) slope: f64,
 }
 
-/// A solution from −1 on.
+/// Solution from −1 on.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trajectory {
-    /// Length of a step, negative backward in time.
+    /// Length of a step; negative backward in time.
     pub(crate) step: f64,
-    /// The stages in the order of their computation: four for each step, then the last node.
+    /// Stages in the order of their computation: four per step, then the last node.
     pub(crate) stages: Vec<Stage>,
 }
 
 /// Derivatives of a solution with respect to the parameters; the last parameter is the initial state.
 pub(crate) struct Sensitivities {
-    /// Of the state at each node.
+    /// Derivatives of the state at each node.
     pub(crate) states: Vec<DVector<f64>>,
-    /// Of the slope at each node.
+    /// Derivatives of the slope at each node.
     pub(crate) slopes: Vec<DVector<f64>>,
-    /// Of the curvatures, two for each step.
+    /// Derivatives of the curvatures, two per step.
     pub(crate) curvatures: Vec<DVector<f64>>,
 }
 
-/// Length of a step where −1..1 has `steps` of them.
+/// Returns the length of a step if −1..1 is divided into `steps` of them.
 fn step_length(steps: usize) -> f64 {
     -2.0 * START / steps as f64
 }
@@ -57,8 +57,8 @@ pub(crate) fn integrate<E>(
     march(field, initial, step_length(steps), steps)
 }
 
-/// Solves y′ = f(y, s) from y(−1) = `initial` over a number of steps, which may go on beyond s = 1, or backward in
-/// time where `step` is negative.
+/// Solves y′ = f(y, s) from y(−1) = `initial` over a number of steps, which may extend beyond s = 1, or go
+/// backward in time if `step` is negative.
 pub(crate) fn march<E>(
     mut field: impl FnMut(f64, f64) -> Result<f64, E>,
     initial: f64,
@@ -82,19 +82,20 @@ pub(crate) fn march<E>(
     Ok(Trajectory { step, stages })
 }
 
-/// The steps of a record's grid that lead from its start to a time: their signed length and how many.
+/// Returns the steps of a record's grid that lead from its start to a time: their signed length and their
+/// number.
 pub(crate) fn steps_to(time: f64, steps: usize) -> (f64, usize) {
     let step = step_length(steps).copysign(time - START);
     (step, ((time - START) / step).ceil().max(1.0) as usize)
 }
 
 impl Trajectory {
-    /// The nodes: where the steps meet, with both ends.
+    /// Returns the nodes: the points between steps, and both ends.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = &Stage> {
         self.stages.iter().step_by(4)
     }
 
-    /// y″ over the halves of each step, as differences of the slopes at its stages: two for each step.
+    /// Returns y″ over the halves of each step, as differences of the slopes at its stages: two per step.
     pub(crate) fn curvatures(&self) -> impl Iterator<Item = f64> {
         let (steps, _) = self.stages.as_chunks::<4>();
         steps.iter().flat_map(|[one, two, three, four]| {
@@ -102,12 +103,12 @@ impl Trajectory {
         })
     }
 
-    /// Derivatives with respect to the parameters of the field and the initial state: the solver's own
-    /// arithmetic, differentiated, so that they are exact for the numerical solution.
+    /// Returns the derivatives with respect to the parameters of the field and the initial state. They are
+    /// derivatives of the solver's own arithmetic, and so exact for the numerical solution.
     pub(crate) fn sensitivities(&self, partials: &Partials) -> Sensitivities {
         let own = partials.by_parameters.nrows();
         let step = self.step;
-        // d f(y(p), s; p)/dp = ∂f/∂y · dy/dp + ∂f/∂p, stage after stage.
+        // The rule d f(y(p), s; p)/dp = ∂f/∂y · dy/dp + ∂f/∂p is applied stage after stage.
         let mut columns = partials.by_parameters.column_iter().zip(&partials.by_state);
         let mut total = |state: &DVector<f64>| {
             columns.next().map_or_else(
@@ -140,8 +141,8 @@ impl Trajectory {
     }
 }
 
-/// Where a time lies on the grid: its interval, and the Hermite weights of the state and the slope at
-/// the interval's two ends.
+/// Location of a time on the grid: its interval, and the Hermite weights of the state and the slope at the
+/// interval's two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
     interval: usize,
@@ -149,12 +150,12 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// The place of a scaled time in −1..1 on a grid of `steps`.
+    /// Locates a scaled time in −1..1 on a grid of `steps`.
     pub(crate) fn of(time: f64, steps: usize) -> Self {
         Self::on(time, step_length(steps), steps)
     }
 
-    /// The place of a scaled time on a grid from −1 on, backward in time where `step` is negative.
+    /// Locates a scaled time on a grid from −1 on, which goes backward in time if `step` is negative.
     pub(crate) fn on(time: f64, step: f64, steps: usize) -> Self {
         let along = (time - START) / step;
         let interval = (along.floor().max(0.0) as usize).min(steps.saturating_sub(1));
@@ -169,7 +170,7 @@ impl Place {
         Self { interval, weights }
     }
 
-    /// Value there, of a function with the given states and slopes at the nodes.
+    /// Returns the value at this place of a function with the given states and slopes at the nodes.
     pub(crate) fn value(&self, nodes: &[Stage]) -> f64 {
         let [a, b, c, d] = self.weights;
         match nodes.get(self.interval..self.interval + 2) {
@@ -178,7 +179,7 @@ impl Place {
         }
     }
 
-    /// Derivative there with respect to the parameters.
+    /// Returns the derivative at this place with respect to the parameters.
     pub(crate) fn sensitivity(&self, of: &Sensitivities) -> Option<DVector<f64>> {
         let [a, b, c, d] = self.weights;
         let ends = self.interval..self.interval + 2;
@@ -199,7 +200,7 @@ mod tests {
     use super::{Place, Stage, integrate, march, steps_to};
     use std::convert::Infallible;
 
-    /// y′ = −(1 + s/2)·y²: y = 1/(1 + (s + 1) + (s² − 1)/4) from y(−1) = 1.
+    /// The equation y′ = −(1 + s/2)·y² has the solution y = 1/(1 + (s + 1) + (s² − 1)/4) from y(−1) = 1.
     fn solve(steps: usize) -> Vec<Stage> {
         let field = |y: f64, s: f64| Ok::<f64, Infallible>(-(1.0 + s / 2.0) * y * y);
         integrate(field, 1.0, steps).unwrap().nodes().copied().collect()

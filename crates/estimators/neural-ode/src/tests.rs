@@ -1,4 +1,4 @@
-//! The whole fit.
+//! Tests of whole fits.
 
 use crate::{ENTRY, NeuralOdeConfig};
 use envelope::Envelope;
@@ -21,12 +21,12 @@ fn times(peaks: usize) -> Vec<f64> {
     (0..peaks).map(|i| 0.288 * i as f64).collect()
 }
 
-/// ln A of an envelope that is no exponential.
+/// Returns ln A of an envelope that is no exponential.
 fn bent(t: f64) -> f64 {
     -0.6 - 0.25 * t + 0.004 * t * t
 }
 
-/// Gaussian scatter about a function of time.
+/// Returns a function of time with Gaussian scatter.
 fn scattered(peaks: usize, of: impl Fn(f64) -> f64, scatter: f64, seed: u64) -> Envelope {
     let mut generator = Seed::new(seed).child("scatter").generator();
     let mut normal = || -> f64 { StandardNormal.sample(&mut generator) };
@@ -38,7 +38,7 @@ fn envelope() -> Envelope {
     scattered(69, bent, 0.05, 0)
 }
 
-/// The slope of the least-squares line, and its value at the mean time, from the textbook.
+/// Returns the slope of the least-squares line, and its value at the mean time, by the textbook formulas.
 fn line(t: &[f64], y: &[f64]) -> (f64, f64, f64) {
     let n = t.len() as f64;
     let (mt, my) = (t.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
@@ -107,7 +107,7 @@ fn the_trajectory_follows_the_bend_and_not_the_scatter() {
         assert!(off < 0.4 * of_the_line, "{off} {of_the_line}");
         share += off / 0.05 / 10.0;
     }
-    // Five of 69 degrees of freedom let √(5/69) = 0.27 of the scatter through; some of the bend is missed.
+    // Five of 69 degrees of freedom pass √(5/69) = 0.27 of the scatter; some of the bend is missed.
     assert!(share < 0.45, "{share}");
 }
 
@@ -148,7 +148,7 @@ fn it_moves_with_the_units() {
     for (time, shift, tilt) in [(1e-3, 0.0, 0.0), (3e5, 0.0, 0.0), (1.0, 3.7, 0.0), (1.0, 0.0, 0.6)] {
         let found = moved(time, shift, tilt);
         close(found.decay_rate, (expected.decay_rate + tilt) / time, 1e-8);
-        // A tilt changes the scale of ln A, and with it how freely the trajectory bends.
+        // A tilt changes the scale of ln A, and so the flexibility of the trajectory.
         close(error(&found), error(&expected) / time, if tilt == 0.0 { 1e-6 } else { 0.05 });
     }
 }
@@ -234,7 +234,7 @@ fn the_file_holds_every_parameter() {
     assert!(tensors.iter().any(|tensor| tensor.name == "initial_state"));
 }
 
-/// The share of 95 % intervals that hold the truth, over envelopes of 20 to 100 peaks.
+/// Returns the share of 95 % intervals that hold the truth, over envelopes of 20 to 100 peaks.
 fn coverage(replicates: usize) -> f64 {
     let holds = |&replicate: &usize| {
         let peaks = 20 + replicate * 80 / replicates;
@@ -246,14 +246,14 @@ fn coverage(replicates: usize) -> f64 {
     (0..replicates).filter(holds).count() as f64 / replicates as f64
 }
 
-/// Of a hundred the share has a standard deviation of 2.2 % about 95 %.
+/// The share of a hundred intervals has a standard deviation of 2.2 % about 95 %.
 #[test]
 fn the_interval_holds_the_truth_as_often_as_it_says() {
     let share = coverage(100);
     assert!((share - 0.95).abs() < 0.055, "{share}");
 }
 
-/// Of five hundred 1.0 %: `cargo test -p estimator-neural-ode of_five_hundred -- --ignored`
+/// The share of five hundred has 1.0 %: `cargo test -p estimator-neural-ode of_five_hundred -- --ignored`
 #[test]
 #[ignore = "takes minutes"]
 fn of_five_hundred_intervals_as_many_hold_the_truth_as_they_say() {
@@ -270,14 +270,14 @@ fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
 #[test]
 fn at_the_peaks_predictions_are_the_fitted_function() {
     let envelope = envelope();
-    // Beyond the record as well: the trajectory within stays what it is.
+    // Times beyond the record are included, which leave the trajectory within it unchanged.
     let times: Vec<f64> = envelope.times_s().iter().copied().chain([30.0, -4.0]).collect();
     let estimate = fit_at(&envelope, 0, &times);
     assert_eq!(estimate.predictions.len(), times.len());
     for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
         assert!((prediction.log_amplitude - fitted).abs() < 1e-12);
     }
-    // Asking changes nothing else.
+    // Asking for predictions changes nothing else.
     assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(&envelope, 0));
 }
 
@@ -298,7 +298,7 @@ fn an_exponential_is_extrapolated() {
 #[test]
 fn predictive_intervals_hold_fresh_peaks() {
     let (mut held, replicates) = (0, 15);
-    // From the first peak to a sixth of the record beyond the last.
+    // Times from the first peak to a sixth of the record beyond the last.
     let times: Vec<f64> = (0..20).map(|i| 0.5 * f64::from(i)).collect();
     for replicate in 0..replicates {
         let envelope = scattered(30, |t| -0.6 - 0.19 * t, 0.1, replicate);
@@ -309,13 +309,13 @@ fn predictive_intervals_hold_fresh_peaks() {
             .zip(times.iter().zip(fresh.log_amplitudes()))
             .filter(|(found, (time, fresh))| {
                 let off = *fresh - 0.6 - 0.19 * *time - found.log_amplitude;
-                // Student's t with some 26 degrees of freedom.
+                // Quantile of Student's t with about 26 degrees of freedom.
                 off.abs() <= 2.0555 * found.std_error.unwrap()
             })
             .count();
     }
     let count = (20 * replicates) as f64;
     let share = held as f64 / count;
-    // Four standard deviations of such a share.
+    // The bounds are four standard deviations of such a share.
     assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / count).sqrt(), "{share}");
 }

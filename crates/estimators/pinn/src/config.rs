@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
@@ -14,13 +14,13 @@ pub struct PinnConfig {
     pub physics_weight: f64,
     /// Most Levenberg–Marquardt steps.
     pub max_steps: u64,
-    /// Training has converged when a step lowers the loss by a smaller share of itself than this.
+    /// Relative decrease of the loss in one step below which the training has converged.
     pub loss_tolerance: f64,
-    /// Factor on the drawn start values.
+    /// Factor on the random start values.
     pub initial_scale: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "hidden",

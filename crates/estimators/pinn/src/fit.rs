@@ -1,4 +1,4 @@
-//! Training.
+//! Training of the network.
 
 use crate::config::PinnConfig;
 use crate::objective::{BESIDE, Objective};
@@ -14,7 +14,7 @@ use neural::{
 use rand::RngExt;
 use std::ops::ControlFlow;
 
-/// Fewest peaks from which the interval has a degree of freedom left.
+/// Fewest peaks that leave the interval a degree of freedom.
 const FEWEST_PEAKS: usize = 4;
 
 impl Estimator for PinnConfig {
@@ -61,7 +61,7 @@ impl Estimator for PinnConfig {
 }
 
 impl PinnConfig {
-    /// One point drawn in each equal part of −1..1.
+    /// Draws one point in each of equal parts of −1..1.
     fn collocation(&self, context: &FitContext<'_>) -> Vec<f64> {
         let mut generator = context.seed("collocation").generator();
         let parts = self.collocation_points as f64;
@@ -73,8 +73,8 @@ impl PinnConfig {
             .collect()
     }
 
-    /// Start values: the network's, then λ uniform in −scale..scale (scaled units, in which an envelope
-    /// that is nearly a line has λ near 1.7: the start is never the answer).
+    /// Draws the start values: those of the network, then λ, uniform in −scale..scale. In scaled units an
+    /// envelope that is nearly a line has λ near 1.7, so that the start is never the answer.
     fn start(&self, context: &FitContext<'_>) -> DVector<f64> {
         let mut generator = context.seed("initial weights").generator();
         let mut parameters =
@@ -82,7 +82,7 @@ impl PinnConfig {
         let uniform: f64 = context.seed("initial decay rate").generator().random();
         parameters.push(self.initial_scale * (2.0 * uniform - 1.0));
         if context.is_at_zero() {
-            // The line beside the network and λ stay.
+            // The line beside the network and λ keep their values.
             let held = parameters.len().saturating_sub(BESIDE);
             parameters.iter_mut().take(held).for_each(|weight| *weight = 0.0);
         }
@@ -90,7 +90,7 @@ impl PinnConfig {
     }
 }
 
-/// λ's entry of a vector of parameters, λ in scaled units: the last.
+/// Returns λ in scaled units: the last entry of a vector of parameters.
 fn rate_of(parameters: &DVector<f64>) -> f64 {
     parameters.iter().next_back().copied().unwrap_or(f64::NAN)
 }
@@ -109,7 +109,7 @@ fn describe(
     tensors.push(NamedTensor { name: "decay_rate".to_owned(), shape: vec![1], values: vec![rate] });
     let stop = LevenbergMarquardt::stop(minimum);
     let laplace = match stop.reached {
-        // Away from the minimum the loss has no such shape.
+        // Away from the minimum the Laplace approximation does not hold.
         Reached::Converged => laplace(objective, &minimum.parameters)?,
         _ => None,
     };
@@ -133,22 +133,22 @@ fn describe(
     })
 }
 
-/// Laplace approximation about the trained parameters, the physics term acting as a prior.
+/// Computes the Laplace approximation about the trained parameters, with the physics term as a prior.
 ///
-/// The degrees of freedom are the peaks minus the trace of the map from data to fitted values, so that
-/// a network that bends pays for it. `None` where the peaks leave no degree of freedom.
+/// The degrees of freedom are the number of peaks minus the trace of the map from data to fitted values, so
+/// that a more flexible network has fewer of them. `None` if no degree of freedom is left.
 fn laplace(objective: &Objective<'_>, parameters: &DVector<f64>) -> Result<Option<Laplace>, FitError> {
     let linearized = objective.linearize(parameters)?;
     Ok(Laplace::about(&linearized, objective.times.len(), |peaks, hat| peaks - hat.trace()))
 }
 
-/// The derivatives of λ by the parameters, whose last it is.
+/// Returns the derivatives of λ by the parameters; λ is the last parameter.
 fn of_rate(parameters: usize) -> DVector<f64> {
     DVector::from_fn(parameters, |at, _| if at + 1 == parameters { 1.0 } else { 0.0 })
 }
 
-/// The network at the times asked about. The physics was asked for within the record only: beyond, its
-/// predictive deviation grows as fast as its weights may move there.
+/// Predicts by the network at the query times. The physics holds it within the record only; beyond, the
+/// predictive deviation grows as the weights leave it free.
 fn predictions(
     scaling: &Scaling,
     objective: &Objective<'_>,
@@ -163,7 +163,7 @@ fn predictions(
     let Linearization { values, jacobian } = network.linearize_values(&times, objective.device)?;
     let predict = |(at, value): (usize, f64)| {
         let std_error = laplace.map(|laplace| {
-            // λ has no part in the network's values.
+            // λ has no effect on the network's values.
             let own = jacobian.row(at).transpose();
             let gradient = own.push(0.0);
             scaling.deviation(laplace.predictive_deviation(&gradient))
@@ -188,12 +188,12 @@ mod tests {
         resolved.section("estimator").unwrap()
     }
 
-    /// An envelope that is no exponential: it bends and scatters.
+    /// Returns an envelope that is no exponential: it bends and scatters.
     fn envelope() -> Envelope {
         conformance::bent().unwrap()
     }
 
-    /// The slope of the least-squares line, and its standard error, from the textbook.
+    /// Returns minus the slope of the least-squares line, and its standard error, by the textbook formulas.
     fn line(envelope: &Envelope) -> (f64, f64) {
         let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
         let n = t.len() as f64;
@@ -284,7 +284,7 @@ mod tests {
         for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
             assert!((prediction.log_amplitude - fitted).abs() < 1e-9);
         }
-        // Asking changes nothing else.
+        // Asking for predictions changes nothing else.
         assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(0, None, &Silent));
     }
 
@@ -298,7 +298,8 @@ mod tests {
             assert!(off < 3.0 * found.std_error.unwrap(), "{time}: {off} {found:?}");
         }
         let errors: Vec<f64> = estimate.predictions.iter().map(|found| found.std_error.unwrap()).collect();
-        // Near the record a straight line's error; four lengths off the weights may do much.
+        // Near the record the error is that of a straight line; four lengths away the weights leave much
+        // freedom.
         assert!(errors[2] < 1.1 * errors[1] && errors[4] > 10.0 * errors[1], "{errors:?}");
         let pure = fit_at(&conformance::exponential(69, -0.6, 0.2).unwrap(), 0, &times[..3]);
         for (time, found) in times.iter().zip(&pure.predictions) {
@@ -310,12 +311,12 @@ mod tests {
     #[test]
     fn predictive_intervals_hold_fresh_peaks() {
         let (mut held, replicates) = (0, 8);
-        // From the first peak to a third of the record beyond the last.
+        // Times from the first peak to a third of the record beyond the last.
         let times: Vec<f64> = (0..20).map(|i| 0.55 * f64::from(i)).collect();
         for replicate in 0..replicates {
             let seed = Seed::new(replicate).child("fresh");
             let envelope = conformance::scattered(30, 0.2, 0.1, &seed.child("peaks")).unwrap();
-            // Scatter about no decay, to be moved to where it is asked for.
+            // Scatter without a decay, to be added to the truth at the query times.
             let fresh = conformance::scattered(20, 0.0, 0.1, &seed.child("new")).unwrap();
             let found = fit_at(&envelope, replicate, &times).predictions;
             held += found
@@ -323,14 +324,14 @@ mod tests {
                 .zip(times.iter().zip(fresh.log_amplitudes()))
                 .filter(|(found, (time, fresh))| {
                     let off = *fresh - 0.2 * *time - found.log_amplitude;
-                    // Student's t with 28 degrees of freedom.
+                    // Quantile of Student's t with 28 degrees of freedom.
                     off.abs() <= 2.0484 * found.std_error.unwrap()
                 })
                 .count();
         }
         let count = (20 * replicates) as f64;
         let share = held as f64 / count;
-        // Four standard deviations of such a share.
+        // The bounds are four standard deviations of such a share.
         assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / count).sqrt(), "{share}");
     }
 }

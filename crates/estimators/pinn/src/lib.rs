@@ -1,19 +1,20 @@
 //! Physics-informed neural network for the envelope's decay rate.
 //!
-//! A network f(t) for ln A(t) and a trainable λ. Two terms of the loss: the network passes near the
-//! measured ln A (data), and it obeys d ln A/dt + λ = 0 at collocation points (physics), the derivative
-//! taken exactly through the layers. It is trained by Levenberg–Marquardt on the exact Jacobian, which
-//! copes with a large physics weight from the first step; raising the weight in stages, as gradient
-//! methods need it, took three times the steps and gave no better rate. After every step the last layer's weights, which enter the
-//! residuals linearly, take their best values for everything else (variable projection).
+//! The unknowns are a network f(t) for ln A(t) and a trainable λ. The loss has two terms: the network passes
+//! near the measured ln A (data), and it obeys d ln A/dt + λ = 0 at collocation points (physics), with the
+//! derivative computed exactly through the layers. It is trained by Levenberg–Marquardt on the exact
+//! Jacobian, which copes with a large physics weight from the first step. Raising the weight in stages, as
+//! gradient methods need it, took three times as many steps and gave no better rate. After every step the
+//! last layer's weights, which enter the residuals linearly, take their best values given all other
+//! parameters (variable projection).
 //!
-//! A finite physics weight w leaves the network some freedom to bend, and λ a bias that falls as 1/w.
-//! That is part of the method, not of its numerics.
+//! A finite physics weight w leaves the network some freedom to bend, and λ a bias that falls as 1/w. This is
+//! a property of the method and not of its numerics.
 //!
-//! Predictions are the network's own values. The physics is asked for within the record only; beyond it the
-//! network is free, and the stated standard deviation, that of a Laplace approximation, grows accordingly:
-//! on the battery's bent envelope it is 0.10 at its end and half a length on, 0.2 to 0.3 a length on, and
-//! 6 to 24 four lengths on.
+//! Predictions are the network's own values. The physics holds within the record only. Beyond it the network
+//! is free, and the stated standard deviation, from a Laplace approximation, grows accordingly: on the
+//! battery's bent envelope it is 0.10 at the end of the record and half a length beyond, 0.2 to 0.3 one
+//! length beyond, and 6 to 24 four lengths beyond.
 //!
 //! Reference: Raissi, Perdikaris, Karniadakis, J. Comput. Phys. 378 (2019) 686.
 
@@ -28,7 +29,7 @@ pub use config::PinnConfig;
 use estimator::{Entry, Estimator, Tag};
 use neural::{AffineSkipNetwork, check_memory};
 
-/// The registry's line.
+/// Registry entry of the physics-informed network.
 pub const ENTRY: Entry = Entry {
     id: "pinn",
     paper_number: Some(13),
@@ -43,7 +44,7 @@ pub const ENTRY: Entry = Entry {
     fields: config::FIELDS,
     build: |settings| {
         let config: PinnConfig = settings.section("estimator")?;
-        // λ beside the network's.
+        // One for λ, besides the network's parameters.
         let parameters = AffineSkipNetwork::parameter_count(&config.hidden) + 1;
         check_memory(settings, parameters, config.collocation_points)?;
         Ok(Box::new(config) as Box<dyn Estimator>)

@@ -1,12 +1,12 @@
-//! The loss as a sum of squares.
+//! Loss as a sum of squares.
 
 use burn::tensor::Device;
 use estimator::FitError;
 use nalgebra::{DMatrix, DVector};
 use neural::{AffineSkipNetwork, LeastSquares, Linearized, Of, PlainNetwork};
 
-/// mean over the peaks of (f(sᵢ) − zᵢ)² + w · mean over the collocation points of (f′(σⱼ) + λ)², in
-/// scaled units. Parameters: those of the network, then λ.
+/// Loss: mean over the peaks of (f(sᵢ) − zᵢ)² + w · mean over the collocation points of (f′(σⱼ) + λ)², in
+/// scaled units. The parameters are those of the network, then λ.
 pub(crate) struct Objective<'a> {
     pub(crate) hidden: &'a [usize],
     pub(crate) device: &'a Device,
@@ -14,31 +14,31 @@ pub(crate) struct Objective<'a> {
     pub(crate) targets: &'a [f64],
     pub(crate) collocation: &'a [f64],
     pub(crate) physics_weight: f64,
-    /// The network's layers are held at zero: an ablation.
+    /// `true` if the network's layers are held at zero: an ablation.
     pub(crate) network_at_zero: bool,
 }
 
-/// Parameters that stand beside the network's layers, the last ones: a and b of its skip, and λ.
+/// Number of parameters outside the network's layers, the last ones: a and b of its skip, and λ.
 pub(crate) const BESIDE: usize = 3;
 
-/// Ridge of the linear parameters' step, as a share of the largest diagonal entry: hidden units that say nearly the same
-/// leave the normal matrix singular to rounding.
+/// Ridge of the linear parameters' step, as a share of the largest diagonal entry. Hidden units that are
+/// nearly equal leave the normal matrix singular to rounding.
 const RIDGE: f64 = 1e-13;
 
-/// λ, and the network's parameters.
+/// Returns λ, and the network's parameters.
 fn split(parameters: &DVector<f64>) -> Result<(f64, &[f64]), FitError> {
     let none = || FitError::Backend { problem: "no parameters".to_owned() };
     parameters.as_slice().split_last().map(|(rate, weights)| (*rate, weights)).ok_or_else(none)
 }
 
 impl Objective<'_> {
-    /// The network and λ of a parameter vector.
+    /// Returns the network and λ of a parameter vector.
     pub(crate) fn model(&self, parameters: &DVector<f64>) -> Result<(AffineSkipNetwork, f64), FitError> {
         let (rate, weights) = split(parameters)?;
         Ok((AffineSkipNetwork::from_parameters(self.hidden, weights, self.device)?, rate))
     }
 
-    /// The same on plain matrices, for training.
+    /// Returns the same on plain matrices, for training.
     fn plain(&self, parameters: &DVector<f64>) -> Result<(PlainNetwork, f64), FitError> {
         let (rate, weights) = split(parameters)?;
         Ok((PlainNetwork::new(self.hidden, weights)?, rate))
@@ -80,14 +80,15 @@ impl LeastSquares for Objective<'_> {
         let slopes = network.linearize(Of::Derivative, self.collocation, self.physics_scale(), part);
         jacobian.view_mut((above, weights), (below, 1)).fill(self.physics_scale());
         if self.network_at_zero {
-            // A parameter without a derivative stays where it is.
+            // A parameter without a derivative keeps its value.
             jacobian.columns_mut(0, (weights + 1).saturating_sub(BESIDE)).fill(0.0);
         }
         Ok(Linearized { residuals: self.assemble(&fitted, &slopes, rate), jacobian })
     }
 
-    /// The last layer's weights enter linearly: they take the step that minimizes the loss, everything else held. The line beside the
-    /// network and λ are trained: with these in the step too nothing would be left to train.
+    /// Updates the last layer's weights, which enter linearly: they take the step that minimizes the loss,
+    /// with all other parameters held. The line beside the network and λ are trained instead: if this step
+    /// included them, nothing would be left to train.
     fn project(&self, mut parameters: DVector<f64>) -> Result<DVector<f64>, FitError> {
         if self.network_at_zero {
             return Ok(parameters);
@@ -121,7 +122,7 @@ mod tests {
     use rand::SeedableRng;
     use rand::rngs::StdRng;
 
-    /// At their best the loss is flat along the linear parameters, and the layers below are where they were.
+    /// After the projection the loss is flat along the linear parameters, and the layers below are unchanged.
     #[test]
     fn a_projection_flattens_the_loss_along_the_linear_parameters_and_moves_no_other() {
         let times: Vec<f64> = (0..30).map(|at| f64::from(at) / 14.5 - 1.0).collect();
@@ -145,7 +146,7 @@ mod tests {
         };
         let projected = objective.project(start.clone()).unwrap();
         let ((before, steep), (after, flat)) = (gradient(&start), gradient(&projected));
-        // The last layer's four weights; behind them its bias, a, b, λ.
+        // The last layer's four weights; after them come its bias, a, b and λ.
         let linear = start.len() - 8;
         assert_eq!(projected.rows(0, linear), start.rows(0, linear));
         assert_eq!(projected.rows(linear + 4, 4), start.rows(linear + 4, 4));

@@ -1,4 +1,4 @@
-//! The path of laws, and the estimate.
+//! Path of laws, and the estimate.
 
 use crate::config::SindyConfig;
 use envelope::Envelope;
@@ -11,7 +11,7 @@ use sparse::{
     solve,
 };
 
-/// Passes after which a law that has not settled will not.
+/// Most passes; a law that has not settled by then is dropped.
 const MOST_PASSES: usize = 200;
 
 impl Estimator for SindyConfig {
@@ -24,15 +24,16 @@ impl Estimator for SindyConfig {
 }
 
 impl SindyConfig {
-    /// Raises the threshold until the constant alone is left.
+    /// Raises the threshold until only the constant is left.
     fn path(&self, scaled: &Scaled, progress: &mut Progress<'_>) -> Path {
         let mut columns: Vec<Column> = self.terms().filter_map(|term| Column::over(term, scaled)).collect();
-        // The initial value and the constant are unknowns too, and a scatter needs a degree of freedom.
+        // The initial value and the constant are unknowns too, and the scatter needs a degree of freedom.
         columns.truncate(scaled.peaks().saturating_sub(3));
         Path::over(columns, scaled, |columns, latest| self.settle(columns, scaled, progress, latest))
     }
 
-    /// Regresses along the trajectory until it reproduces itself; `latest` follows. Gives whether it does.
+    /// Regresses along the trajectory until the trajectory reproduces itself; `latest` is updated. Returns
+    /// `true` if it does.
     fn settle(
         &self,
         columns: &[Column],
@@ -47,7 +48,7 @@ impl SindyConfig {
         for _ in 0..MOST_PASSES {
             progress.advance()?;
             let Some(mut law) = regress(columns, along.as_ref(), scaled) else {
-                // Drop by the coefficients of the last law that was finite, if there was one.
+                // Terms are dropped by the coefficients of the last finite law, if there was one.
                 *latest = along.unwrap_or_else(|| Law::null(scaled));
                 return Ok(false);
             };
@@ -61,7 +62,7 @@ impl SindyConfig {
             }
             progress.tell(&law, &phase, scaled);
             *latest = law.clone();
-            // A law of the constant alone has no terms to evaluate anew.
+            // A law of the constant alone has no terms to evaluate again.
             if columns.is_empty() || (along.is_some() && change <= self.settle_tolerance * scaled.spread) {
                 return Ok(true);
             }
@@ -100,8 +101,8 @@ impl SindyConfig {
     }
 }
 
-/// The law at the times asked about. Its regression left residuals orthogonal to its own regressors; before
-/// it has settled there is no error to state.
+/// Predicts by the law at the query times. Its regression leaves residuals orthogonal to its own regressors.
+/// If the law has not settled, no error is stated.
 fn predicted(scaled: &Scaled, law: &Law, has_settled: bool, query_times: &[f64]) -> Vec<Prediction> {
     let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
     let instruments = || regressors(&columns, Some(law), scaled);
@@ -109,11 +110,11 @@ fn predicted(scaled: &Scaled, law: &Law, has_settled: bool, query_times: &[f64])
     predictions(law, scaled, asked.then(instruments), query_times)
 }
 
-/// The regressors 1, s and the integrals of the terms, evaluated along a law's trajectory, or at the measured
-/// peaks: peaks by parameters.
+/// Returns the regressors 1, s and the integrals of the terms, evaluated along a law's trajectory or at the
+/// measured peaks: peaks by parameters.
 fn regressors(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> DMatrix<f64> {
     let points = along.map_or(&scaled.logs, |along| &along.trajectory);
-    // Measured peaks have no derivative that could be trusted.
+    // Measured peaks have no reliable derivative.
     let slopes: Option<Vec<f64>> = along.map(|along| {
         along.trajectory.iter().zip(&scaled.times).map(|(&x, &time)| along.rate(x, time)).collect()
     });
@@ -131,8 +132,8 @@ fn regressors(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> DMatr
     DMatrix::from_iterator(scaled.peaks(), 2 + columns.len(), entries)
 }
 
-/// One regression of x on the regressors along a law's trajectory, or at the measured peaks. `None` where a
-/// number overflows.
+/// Regresses x once on the regressors along a law's trajectory, or at the measured peaks. `None` if a number
+/// overflows.
 fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<Law> {
     let matrix = regressors(columns, along, scaled);
     let solution = solve(matrix.clone(), DVector::from_column_slice(&scaled.logs))?;
@@ -143,8 +144,9 @@ fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<L
     law.squares.is_finite().then_some(law)
 }
 
-/// The scatter about the law, spread over the peaks as a line's slope sees it: the projection of the
-/// trajectory is the projection of the peaks, because the residuals are orthogonal to 1 and t.
+/// Computes the standard error from the scatter about the law, with the leverage of the peaks on a line's
+/// slope. The projection of the trajectory equals that of the peaks, because the residuals are orthogonal to
+/// 1 and t.
 fn uncertainty(scaled: &Scaled, law: &Law, decay_rate: f64) -> Option<Uncertainty> {
     let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)? as f64;
     let std_error = (law.squares / degrees / scaled.squared_times()).sqrt() / scaled.span_s;

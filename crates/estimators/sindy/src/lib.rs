@@ -1,44 +1,46 @@
 //! Sparse identification of the envelope's dynamics.
 //!
-//! A law d ln A/dt = c₀ + Σ cₖ θₖ is sought in a library of terms θₖ(A, t): a constant (viscous damping),
-//! 1/A (dry friction), A (quadratic drag), and others on request. No derivative is taken of the scattered
-//! peaks. The law is regressed in its integral form, with the initial value as an unknown:
+//! The method searches for a law d ln A/dt = c₀ + Σ cₖ θₖ in a library of terms θₖ(A, t): a constant (viscous
+//! damping), 1/A (dry friction), A (quadratic drag), and others on request. The scattered peaks are not
+//! differentiated. The law is regressed in its integral form, with the initial value as an unknown:
 //!
 //! ln A(t) = ln A(0) + c₀ t + Σ cₖ ∫₀ᵗ θₖ dt′.
 //!
-//! - **Passes.** Terms evaluated at the measured peaks carry the peaks' scatter, and bias the
-//!   coefficients. So they are evaluated along the law's own trajectory (measured peaks first, then the
-//!   function that the last regression gave) until the trajectory reproduces itself. A law that does not
-//!   settle is dropped.
-//! - **Thresholds.** The terms are standardized over the peaks, and the threshold rises from zero: it
-//!   stops just above the smallest coefficient, which falls, and the rest is regressed anew. This gives
-//!   one law for every number of terms.
-//! - **Choice.** The simplest law whose Bayesian information criterion is within `evidence` of the best,
-//!   the peaks counted as the independent ones that the residuals' autocorrelation leaves.
+//! - **Passes.** Terms evaluated at the measured peaks carry the peaks' scatter and bias the coefficients. So
+//!   they are evaluated along the law's own trajectory (first at the measured peaks, then along the function
+//!   of the last regression) until the trajectory reproduces itself. A law that does not settle is dropped.
+//! - **Thresholds.** The terms are standardized over the peaks, and the threshold rises from zero. It stops
+//!   just above the smallest coefficient; that term is dropped, and the others are regressed again. This
+//!   gives one law for every number of terms.
+//! - **Choice.** The result is the simplest law whose Bayesian information criterion is within `evidence` of
+//!   the best. The number of peaks in it is the effective number of independent ones, from the residuals'
+//!   autocorrelation.
 //!
 //! The constant is never thresholded: an envelope times exp(−δt) obeys the same law with δ added, so that a
-//! set of laws without it would not be closed under what an added damping does.
+//! set of laws without the constant would not be closed under an added damping.
 //!
-//! # What λ is
+//! # Definition of λ
 //!
-//! Where the law is c₀ alone, λ = −c₀. Otherwise λ is minus the slope of the least-squares projection of the
-//! law's trajectory on a line over the peak times. In the integral form the regressors of the constant law
-//! are 1 and t: with the initial value unknown, that regression is the least-squares line, and no other
-//! formulation of the same law could be. The residuals of richer laws are orthogonal to 1 and t as well, so
-//! λ is that of the line whichever law is chosen. What the method adds is the law: whether the decay is an
-//! exponential at all, and what it is instead.
+//! If the law is c₀ alone, λ = −c₀. Otherwise λ is minus the slope of the least-squares line through the
+//! law's trajectory over the peak times. In the integral form the regressors of the constant law are 1 and t:
+//! with the initial value unknown, that regression is the least-squares line, and no other formulation of the
+//! same law could differ. The residuals of richer laws are orthogonal to 1 and t as well, so that λ is that
+//! of the line for every law. The method's contribution is the law: it shows whether the decay is an
+//! exponential, and its form otherwise.
 //!
 //! # Interval
 //!
-//! Student's t on the scatter about the chosen law, peaks minus parameters degrees of freedom. It holds for
-//! scatter that is independent from peak to peak and is conditional on the choice.
+//! The interval is Student's t on the scatter about the chosen law, with peaks minus parameters degrees of
+//! freedom. It holds for scatter that is independent from peak to peak, and is conditional on the choice of
+//! the law.
 //!
 //! # Predictions
 //!
-//! The law itself: its trajectory between the peaks, integrated on beyond them and backward before them. A law
-//! with dry friction comes to rest in a finite time, and ln A is −∞ from there on. The standard deviation of a
-//! measured peak is that of the scatter and of what it does to the initial value and the coefficients, by the
-//! delta method ([`sparse::predictions`]); like the interval it is conditional on the choice of terms.
+//! Predictions follow the law itself: its trajectory between the peaks, integrated forward beyond them and
+//! backward before them. A law with dry friction comes to rest in a finite time, and ln A is −∞ from there
+//! on. The standard deviation of a measured peak combines the scatter and its effect on the initial value and
+//! the coefficients, by the delta method ([`sparse::predictions`]); like the interval it is conditional on
+//! the choice of terms.
 //!
 //! References: Brunton, Proctor, Kutz, PNAS 113 (2016) 3932 (sequential thresholding); Schaeffer, McCalla,
 //! Physical Review E 96 (2017) 023302 (integral form); Boninsegna, Nüske, Clementi, Journal of Chemical
@@ -56,7 +58,7 @@ pub use config::SindyConfig;
 
 use estimator::{Entry, Estimator, Tag};
 
-/// The registry's line.
+/// Registry entry of the sparse identification.
 pub const ENTRY: Entry = Entry {
     id: "sindy",
     paper_number: Some(12),

@@ -1,4 +1,4 @@
-//! Tests of whole fits: those that every method of laws has to pass.
+//! Tests of whole fits, shared by all methods that discover laws.
 
 #[path = "../../../sparse/testing/laws.rs"]
 mod laws;

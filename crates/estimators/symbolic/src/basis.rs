@@ -1,12 +1,12 @@
-//! The space that small changes of the constants move a fitted function in.
+//! Tangent space of a fitted function: its directions of change with the constants.
 
 /// Share of a column's length below which it counts as lying in the others' space.
 const DEPENDENT: f64 = 1e-7;
 
-/// An orthonormal basis of the space of the derivatives by the constants.
+/// Orthonormal basis of the space of the derivatives by the constants.
 ///
-/// Columns may go on beyond the peaks, to times that were not measured: those entries follow the
-/// combinations that make the basis, but have no say in them.
+/// Columns may continue beyond the peaks, to times that were not measured. Those entries follow the linear
+/// combinations of the basis, but do not determine them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TangentSpace {
     basis: Vec<Vec<f64>>,
@@ -14,8 +14,8 @@ pub(crate) struct TangentSpace {
 }
 
 impl TangentSpace {
-    /// Gram–Schmidt over the first `peaks` entries, each column twice ("twice is enough": Giraud, Langou,
-    /// Rozložník 2005).
+    /// Orthonormalizes by Gram–Schmidt over the first `peaks` entries, each column twice ("twice is enough":
+    /// Giraud, Langou, Rozložník 2005).
     pub(crate) fn of<'a>(peaks: usize, columns: impl IntoIterator<Item = &'a [f64]>) -> Self {
         let mut space = Self { basis: Vec::new(), peaks };
         for column in columns {
@@ -24,12 +24,12 @@ impl TangentSpace {
         space
     }
 
-    /// Number of constants that matter, to first order.
+    /// Returns the number of constants with a separate effect, to first order.
     pub(crate) fn rank(&self) -> usize {
         self.basis.len()
     }
 
-    /// Adds a column; whether it lay outside of the space before.
+    /// Adds a column; returns `true` if it lay outside of the space before.
     pub(crate) fn extend(&mut self, column: &[f64]) -> bool {
         let length = self.norm(column);
         if !length.is_normal() {
@@ -52,9 +52,9 @@ impl TangentSpace {
         true
     }
 
-    /// The leverage of each of `points` points: by how much its fitted value follows its measured one, and
-    /// what the scatter of the peaks makes of the value at a time that was not measured, as a share of
-    /// their variance.
+    /// Returns the leverage of each of `points` points. At a peak it is the derivative of the fitted value by
+    /// the measured one. At a time that was not measured it is the variance of the value due to the scatter
+    /// of the peaks, as a share of their variance.
     pub(crate) fn leverages(&self, points: usize) -> Vec<f64> {
         let mut leverages = vec![0.0; points];
         for direction in &self.basis {

@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
@@ -12,31 +12,31 @@ pub struct SymbolicConfig {
     pub max_generations: u64,
     /// Generations without progress after which the evolution has converged.
     pub patience: u64,
-    /// Number of expressions that compete to be a parent.
+    /// Number of expressions that compete to become a parent.
     pub tournament: usize,
     /// Share of children by crossover.
     pub crossover: f64,
-    /// Share of children by a drawn subtree.
+    /// Share of children by a random subtree.
     pub subtree_mutation: f64,
     /// Share of children by a changed node; the rest are hoisted subtrees.
     pub point_mutation: f64,
     /// Most nodes of an expression.
     pub max_nodes: usize,
-    /// Depth of the deepest drawn tree.
+    /// Depth of the deepest random tree.
     pub initial_depth: usize,
-    /// What a node costs in a tournament, as a share of the loss.
+    /// Cost of a node in a tournament, as a share of the loss.
     pub parsimony: f64,
     /// Most Levenberg–Marquardt steps for the constants of a child.
     pub constant_steps: u64,
-    /// Whether the sine is one of the functions.
+    /// `true` if the sine is one of the functions.
     pub sine: bool,
-    /// Most peaks that the evolution looks at.
+    /// Most peaks that the evolution uses.
     pub search_peaks: usize,
-    /// Steepest straight part of an expression of the first population.
+    /// Steepest linear part of an expression in the first population.
     pub initial_steepness: f64,
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "population",

@@ -1,44 +1,44 @@
-//! Fitting an expression's constants.
+//! Fit of an expression's constants.
 
 use crate::basis::TangentSpace;
 use crate::data::Data;
 use crate::expression::{Expression, Workspace};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// A step so small that the change of the loss drowns in its rounding, as a share of the loss.
+/// Predicted decrease of the loss, as a share of the loss, below which it cannot be told from rounding.
 const ROUNDING_SHARE: f64 = 1e-10;
 
-/// Most rejected steps in a row before the constants are called the best there are.
+/// Most rejected steps in a row, after which the constants count as the best ones.
 const MOST_REJECTIONS: u32 = 10;
 
-/// Largest cosine between residuals and derivatives at constants that are called settled.
+/// Largest cosine between residuals and derivatives at which the constants count as settled.
 const SETTLED: f64 = 1e-9;
 
-/// What a fit of the constants gave.
+/// Result of a fit of the constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fitted {
-    /// The loss: infinite where it is not finite on every peak.
+    /// Loss; infinite if the expression is not finite on every peak.
     pub(crate) loss: f64,
-    /// Whether there are best constants and these are they. An expression that gets better the farther
-    /// its constants run, such as a·exp(b·x) + c on its way to a line, has none.
+    /// `true` if there are best constants and the fit reached them. An expression that improves as its
+    /// constants diverge, such as a·exp(b·x) + c on its way to a line, has none.
     pub(crate) settled: bool,
 }
 
-/// When the fit of the constants ends.
+/// Stopping criteria of the fit of the constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Effort {
     /// Most steps.
     pub(crate) steps: u64,
-    /// It ends when a step promises to lower the loss by a smaller share of itself than this.
+    /// Relative decrease of the loss predicted for a step, at or below which the fit ends.
     pub(crate) loss_tolerance: f64,
 }
 
 impl Effort {
-    /// All that rounding leaves.
+    /// Fit as far as rounding allows.
     pub(crate) const FULL: Self = Self { steps: 300, loss_tolerance: 1e-28 };
 }
 
-/// The loss of an expression: its mean square error, infinite where it is not finite on every peak.
+/// Returns the loss of an expression: its mean square error, infinite if it is not finite on every peak.
 pub(crate) fn loss(expression: &Expression, data: &Data, workspace: &mut Workspace) -> f64 {
     let values = workspace.values(expression, &data.times);
     let sum: f64 = values.iter().zip(&data.targets).map(|(value, target)| (value - target).powi(2)).sum();
@@ -49,7 +49,7 @@ fn finite_or_infinite(loss: f64) -> f64 {
     if loss.is_finite() { loss } else { f64::INFINITY }
 }
 
-/// The loss at a point with what Gauss and Newton need of it.
+/// Loss at a point, with the terms that Gauss–Newton needs.
 struct Point {
     constants: Vec<f64>,
     loss: f64,
@@ -83,12 +83,12 @@ impl Point {
         finite.then_some(Self { constants, loss, gradient, normal })
     }
 
-    /// Whether the residuals are orthogonal to every derivative, or gone.
+    /// Returns `true` if the residuals are orthogonal to every derivative, or zero up to rounding.
     fn is_settled(&self, rounding: f64) -> bool {
         self.loss <= rounding || self.steepness() <= SETTLED * SETTLED * self.loss
     }
 
-    /// The gradient in units that do not depend on how the constants are scaled.
+    /// Returns the squared gradient in units that do not depend on the scaling of the constants.
     fn steepness(&self) -> f64 {
         let scales = self.normal.diagonal();
         let terms = self.gradient.iter().zip(&scales);
@@ -96,10 +96,11 @@ impl Point {
     }
 }
 
-/// Fits an expression's constants by the Levenberg–Marquardt method from the values they have.
-/// Marquardt's scaling of the damping keeps constants of all sizes moving.
+/// Fits an expression's constants by the Levenberg–Marquardt method from their present values. Marquardt's
+/// scaling of the damping moves constants of all sizes.
 ///
-/// Near the minimum, where the loss no longer shows a step, one is taken when it lowers the gradient.
+/// Near the minimum, where the decrease of the loss is below rounding, a step is accepted if it lowers the
+/// gradient.
 ///
 /// Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; Nielsen, report IMM-REP-1999-05 (DTU 1999);
 /// for fitting constants within genetic programming: Kommenda et al., Genet. Program. Evolvable Mach. 21
@@ -112,7 +113,7 @@ pub(crate) fn fit_constants(
 ) -> Fitted {
     let start = Point::new(expression, data, workspace).filter(|point| !point.constants.is_empty());
     let Some(mut point) = start else {
-        // Nothing to fit, or nowhere to go.
+        // There are no constants, or the start is not finite.
         let loss = loss(expression, data, workspace);
         return Fitted { loss, settled: expression.constants().next().is_none() };
     };
@@ -132,7 +133,7 @@ pub(crate) fn fit_constants(
         }
         let trial = Cholesky::new(damped).and_then(|factor| {
             let step = -factor.solve(&point.gradient);
-            // ‖r‖² − ‖r + J·s‖² for the damped step s, whose damping counts once more.
+            // The predicted decrease ‖r‖² − ‖r + J·s‖² of the damped step s includes the damping once more.
             let scales = point.normal.diagonal().map(|scale| damping * scale.max(floor));
             let predicted = step.dot(&(step.component_mul(&scales) - &point.gradient));
             let moved: Vec<f64> = point.constants.iter().zip(&step).map(|(at, step)| at + step).collect();
@@ -168,18 +169,17 @@ pub(crate) fn fit_constants(
     Fitted { loss: point.loss, settled: point.is_settled(rounding) }
 }
 
-/// The error of an expression on peaks that it has not seen.
+/// Error of an expression on held-out peaks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct HeldOut {
-    /// Mean square error over the peaks, each left out in turn; infinite where there is no degree of
-    /// freedom.
+    /// Mean square error over the peaks, each left out in turn; infinite if there is no degree of freedom.
     pub(crate) mean: f64,
     /// Standard error of that mean.
     pub(crate) std_error: f64,
 }
 
-/// Leaving one peak out in turn, without fitting again: the residual over one minus the leverage. Exact
-/// where the constants enter linearly, and to first order otherwise.
+/// Computes the error with one peak left out in turn, without fitting again: the residual over one minus the
+/// leverage. It is exact if the constants enter linearly, and correct to first order otherwise.
 ///
 /// Reference: Allen, Technometrics 16 (1974) 125.
 pub(crate) fn held_out(expression: &Expression, data: &Data, workspace: &mut Workspace) -> HeldOut {
@@ -201,7 +201,7 @@ pub(crate) fn held_out(expression: &Expression, data: &Data, workspace: &mut Wor
     if mean.is_finite() && std_error.is_finite() { HeldOut { mean, std_error } } else { never }
 }
 
-/// The space of the derivatives by the constants.
+/// Returns the space of the derivatives by the constants.
 pub(crate) fn tangent_space(expression: &Expression, data: &Data, workspace: &mut Workspace) -> TangentSpace {
     workspace.values(expression, &data.times);
     TangentSpace::of(data.len(), workspace.derivatives(expression, data.len()))
@@ -226,7 +226,7 @@ mod tests {
         Expression::binary(Binary::Add, product, &Expression::constant(-0.2))
     }
 
-    /// a·exp(b·x) + c
+    /// Returns a·exp(b·x) + c.
     fn exponential() -> Expression {
         let inner = Expression::binary(Binary::Multiply, Expression::constant(0.5), &Expression::time());
         let scaled = Expression::binary(

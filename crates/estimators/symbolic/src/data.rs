@@ -1,9 +1,9 @@
-//! The measured envelope in the coordinates that expressions work in.
+//! Measured envelope in the coordinates of the expressions.
 
 use envelope::Envelope;
 use estimator::{FitError, Scaling};
 
-/// The peaks in scaled units: τ in 0..1 and z.
+/// Peaks in scaled units: τ in 0..1 and z.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Data {
     pub(crate) scaling: Scaling,
@@ -21,7 +21,7 @@ impl Data {
         self.targets.len()
     }
 
-    /// At most `most` of the peaks, evenly chosen, the first and the last among them.
+    /// Returns at most `most` of the peaks, evenly chosen, including the first and the last.
     pub(crate) fn thinned(&self, most: usize) -> Self {
         if self.len() <= most {
             return self.clone();
@@ -33,23 +33,23 @@ impl Data {
         Self { times: chosen(&self.times), targets: chosen(&self.targets), ..self.clone() }
     }
 
-    /// The mean square that rounding alone leaves of a perfect fit.
+    /// Returns the mean square error of a perfect fit due to rounding.
     pub(crate) fn rounding(&self) -> f64 {
         let digit = 16.0 * f64::EPSILON * (1.0 + (self.scaling.mean() / self.scaling.spread()).abs());
         digit * digit
     }
 
-    /// Σ(x − x̄)².
+    /// Returns Σ(x − x̄)².
     pub(crate) fn time_scatter(&self) -> f64 {
         let mean = self.times.iter().sum::<f64>() / self.len() as f64;
         self.times.iter().map(|time| (time - mean).powi(2)).sum()
     }
 
-    /// The slope of the projection of a fitted function on a straight line over the peak times:
-    /// Σ(x − x̄)f(x)/Σ(x − x̄)². It reads the expression, not the measured amplitudes.
+    /// Returns the slope of the projection of a fitted function on a straight line over the peak times: Σ(x −
+    /// x̄)f(x)/Σ(x − x̄)². It uses the expression and not the measured amplitudes.
     pub(crate) fn projected_slope(&self, fitted: &[f64]) -> f64 {
         let mean = self.times.iter().sum::<f64>() / self.len() as f64;
-        // The mean goes out first: far fewer digits cancel.
+        // The mean is subtracted first, so that far fewer digits cancel.
         let level = fitted.iter().sum::<f64>() / self.len() as f64;
         let along: f64 =
             self.times.iter().zip(fitted).map(|(time, value)| (time - mean) * (value - level)).sum();

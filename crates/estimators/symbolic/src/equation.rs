@@ -5,21 +5,21 @@ use crate::expression::{Expression, Node};
 use crate::operators::{Binary, Unary};
 use std::fmt;
 
-/// Highest power of t that products of sums are multiplied out to; beyond, digits would cancel.
+/// Highest power of t to which products of sums are multiplied out; beyond, digits would cancel.
 const HIGHEST_POWER: u32 = 4;
 
-/// A sum of terms and a constant: the normal form in which equal terms find each other.
+/// Sum of terms and a constant: the normal form, in which equal terms are merged.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Equation {
     offset: f64,
-    /// Factor and what it multiplies; no two alike.
+    /// Factors, with the terms that they multiply; no two terms are equal.
     terms: Vec<(f64, Core)>,
 }
 
-/// What a term is made of, without its factor.
+/// Term without its factor.
 #[derive(Debug, Clone, PartialEq)]
 enum Core {
-    /// t to a power, from 1.
+    /// Power of t, from 1 on.
     Power(u32),
     Call(Unary, Box<Equation>),
     Product(Box<Equation>, Box<Equation>),
@@ -27,7 +27,8 @@ enum Core {
 }
 
 impl Equation {
-    /// ln A over the time in seconds after the first peak, of an expression in scaled units.
+    /// Converts an expression in scaled units to ln A as a function of the time in seconds after the first
+    /// peak.
     pub(crate) fn new(expression: &Expression, data: &Data) -> Self {
         let mut stack: Vec<Self> = Vec::new();
         for node in expression.nodes() {
@@ -63,12 +64,12 @@ impl Equation {
         Self { offset: 0.0, terms: vec![(1.0, core)] }
     }
 
-    /// The value where the equation is a constant.
+    /// Returns the value if the equation is a constant.
     fn as_constant(&self) -> Option<f64> {
         self.terms.is_empty().then_some(self.offset)
     }
 
-    /// Whether there is but one term: its factor can move out.
+    /// Returns the only term if there is just one, so that its factor can be moved out.
     fn as_single(&self) -> Option<&(f64, Core)> {
         match self.terms.as_slice() {
             [term] if self.offset == 0.0 => Some(term),
@@ -76,7 +77,7 @@ impl Equation {
         }
     }
 
-    /// Factor and degree of a single power of t.
+    /// Returns factor and degree of a single power of t.
     fn as_power(&self) -> Option<(f64, u32)> {
         match self.as_single()? {
             (factor, Core::Power(power)) => Some((*factor, *power)),
@@ -84,7 +85,7 @@ impl Equation {
         }
     }
 
-    /// Degree as a polynomial in t.
+    /// Returns the degree if the equation is a polynomial in t.
     fn degree(&self) -> Option<u32> {
         self.terms.iter().try_fold(0, |degree, (_, core)| match core {
             Core::Power(power) => Some(degree.max(*power)),
@@ -133,7 +134,7 @@ impl Equation {
         Self::of(Core::Product(Box::new(left), Box::new(right))).times_factor(one * two)
     }
 
-    /// The product with a single power of t, term by term.
+    /// Returns the product with a single power of t, term by term.
     fn distributed(&self, power: &Self) -> Self {
         let Some((factor, degree)) = power.as_power() else { return self.clone() };
         let constant = power.clone().times_factor(self.offset);
@@ -151,7 +152,7 @@ impl Equation {
         terms.fold(constant, Self::plus)
     }
 
-    /// The product of two polynomials.
+    /// Returns the product of two polynomials.
     fn multiplied_out(&self, other: &Self) -> Self {
         let monomials = |equation: &Self| -> Vec<(f64, u32)> {
             let powers = equation.terms.iter().filter_map(|(factor, core)| match core {
@@ -209,7 +210,7 @@ impl Equation {
                 let (factor, core) = self.normalized();
                 Self::of(Core::Call(operator, Box::new(core))).times_factor(factor * factor)
             }
-            // exp(a + u) = exp(a)·exp(u), where that does not leave the range of doubles.
+            // exp(a + u) = exp(a)·exp(u), unless exp(a) leaves the range of doubles.
             Unary::Exp if self.offset.exp().is_normal() => {
                 let factor = self.offset.exp();
                 let rest = Self { offset: 0.0, ..self };
@@ -219,7 +220,7 @@ impl Equation {
         }
     }
 
-    /// The factor of a single term, and the equation without it.
+    /// Returns the factor of a single term, and the equation without it.
     fn normalized(self) -> (f64, Self) {
         match self.as_single() {
             Some((factor, core)) => (*factor, Self::of(core.clone())),
@@ -227,12 +228,12 @@ impl Equation {
         }
     }
 
-    /// Number of terms, the constant among them.
+    /// Returns the number of terms, including the constant.
     fn size(&self) -> usize {
         self.terms.len() + usize::from(self.offset != 0.0 || self.terms.is_empty())
     }
 
-    /// Within a product: in brackets where it is a sum or a negative number.
+    /// Writes the equation for use within a product: in brackets if it is a sum or a negative number.
     fn bracketed(&self) -> String {
         if self.size() > 1 || self.terms.iter().any(|(factor, _)| *factor < 0.0) || self.offset < 0.0 {
             format!("({self})")
@@ -269,7 +270,7 @@ impl fmt::Display for Core {
 impl fmt::Display for Equation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut powers: Vec<&(f64, Core)> = self.terms.iter().collect();
-        // Powers of t first, from the lowest; the rest in the order of the expression.
+        // Powers of t first, from the lowest; then the other terms in the order of the expression.
         powers.sort_by_key(|(_, core)| match core {
             Core::Power(power) => *power,
             _ => u32::MAX,
@@ -300,7 +301,7 @@ impl fmt::Display for Equation {
     }
 }
 
-/// A number to eight digits, without idle zeros.
+/// Formats a number with eight digits, without trailing zeros.
 fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -349,7 +350,7 @@ mod tests {
     fn a_line_reads_as_a_line_however_it_was_built() {
         let data = data();
         let [constant, time] = [Expression::constant(-2.0), Expression::time()];
-        // (x − 2)·(−2) + (x·x − x·x) + x/x
+        // The expression is (x − 2)·(−2) + (x·x − x·x) + x/x.
         let shifted = Expression::binary(Binary::Add, time.clone(), &constant);
         let scaled = Expression::binary(Binary::Multiply, shifted, &constant);
         let square = Expression::unary(Unary::Square, time.clone());

@@ -1,4 +1,4 @@
-//! The evolution.
+//! Evolution of a population of expressions.
 
 use crate::config::SymbolicConfig;
 use crate::constants::{Effort, fit_constants, loss};
@@ -10,38 +10,38 @@ use estimator::{FitContext, Reached, Step};
 use rand::{Rng, RngExt};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most draws for an expression of the first population, and for a child that is new.
+/// Most draws for an expression of the first population, and for a new child.
 const MOST_DRAWS: usize = 50;
 
-/// How often the constants of one structure are fitted, each time from other starts.
+/// Number of fits of the constants of one structure, each from other starts.
 const FITS_PER_STRUCTURE: u32 = 3;
 
-/// The loss is settled enough for breeding when a step lowers it by less than this share.
+/// Relative decrease of the loss in a step below which the fit is good enough for breeding.
 const BREEDING_TOLERANCE: f64 = 1e-8;
 
-/// Share of the least held-out error that counts as progress.
+/// Relative decrease of the least held-out error that counts as progress.
 const PROGRESS: f64 = 0.01;
 
-/// An expression of the population.
+/// Expression of the population.
 #[derive(Debug, Clone)]
 pub(crate) struct Individual {
     pub(crate) expression: Expression,
     pub(crate) loss: f64,
-    /// What tournaments go by: less is better.
+    /// Score in tournaments; smaller is better.
     score: f64,
 }
 
-/// What the evolution left.
+/// Result of the evolution.
 pub(crate) struct Evolved {
-    /// Empty where the evolution did not begin.
+    /// Pareto front; empty if the evolution did not begin.
     pub(crate) front: Front,
-    /// The best of the drawn population, its constants as drawn.
+    /// Best expression of the random first population, with its constants as drawn.
     pub(crate) drawn: Individual,
     pub(crate) generations: u64,
     pub(crate) reached: Reached,
 }
 
-/// A fit that was made before.
+/// Stored fit of a structure.
 struct Known {
     constants: Vec<f64>,
     loss: f64,
@@ -58,7 +58,7 @@ struct Evolution<'a> {
     front: Front,
 }
 
-/// Runs the evolution on the peaks it looks at.
+/// Runs the evolution on the given peaks.
 pub(crate) fn evolve(config: &SymbolicConfig, data: &Data, context: &FitContext<'_>) -> Evolved {
     let mut evolution = Evolution {
         config,
@@ -102,7 +102,7 @@ impl Evolution<'_> {
             };
             population = candidates.into_iter().map(|candidate| self.grown(candidate)).collect();
             generations += 1;
-            // The front breeds, too, so that nothing good is lost.
+            // The front takes part in breeding, so that nothing good is lost.
             let kept: Vec<Individual> = self
                 .front
                 .members()
@@ -127,7 +127,7 @@ impl Evolution<'_> {
         context.observe(&Step { step, planned, phase, loss: individual.loss, decay_rate });
     }
 
-    /// The first population: drawn, not fitted, and too flat to be an answer.
+    /// Draws the first population; it is not fitted, and too flat to be an answer.
     fn first<G: Rng>(&mut self, generator: &mut G) -> Vec<Individual> {
         (0..self.config.population)
             .map(|index| {
@@ -148,13 +148,13 @@ impl Evolution<'_> {
     }
 
     fn individual(&self, expression: Expression, loss: f64) -> Individual {
-        // In steps of 1e-6, so that rounding decides between no two expressions that mean the same.
+        // In steps of 1e-6, so that rounding does not decide between two equivalent expressions.
         let error = (loss + self.data.rounding()).ln();
         let score = (error * 1e6).round() / 1e6 + self.config.parsimony * expression.complexity() as f64;
         Individual { expression, loss, score }
     }
 
-    /// An expression with its constants fitted, offered to the front.
+    /// Fits the constants of an expression and offers it to the front.
     fn grown(&mut self, mut expression: Expression) -> Individual {
         let structure = expression.structure();
         let effort = Effort { steps: self.config.constant_steps, loss_tolerance: BREEDING_TOLERANCE };
@@ -162,7 +162,7 @@ impl Evolution<'_> {
         let fits = self.known.get(&structure).map_or(0, |known| known.fits);
         if fits < FITS_PER_STRUCTURE {
             let loss = fit_constants(&mut expression, self.data, effort, &mut self.workspace).loss;
-            // Constants that admit a pole between two peaks are as good as none.
+            // Constants that allow a pole between two peaks are worthless.
             let loss = if expression.is_sound() { loss } else { f64::INFINITY };
             let known = self.known.entry(structure.clone()).or_insert_with(|| Known {
                 constants: expression.constants().collect(),
@@ -186,7 +186,7 @@ impl Evolution<'_> {
         self.individual(expression, loss)
     }
 
-    /// The next generation: children that differ from each other in more than their constants.
+    /// Returns the next generation: children that differ from each other in more than their constants.
     fn children<G: Rng>(&self, population: &[Individual], generator: &mut G) -> Vec<Expression> {
         let mut seen = BTreeSet::new();
         (0..self.config.population)
@@ -221,7 +221,7 @@ impl Evolution<'_> {
         }
     }
 
-    /// The best of some that are drawn; of equals the first.
+    /// Returns the best of some random individuals; the first one among equals.
     fn winner<'b, G: Rng>(&self, population: &'b [Individual], generator: &mut G) -> Option<&'b Expression> {
         (0..self.config.tournament)
             .filter_map(|_| population.get(generator.random_range(0..population.len().max(1))))

@@ -1,13 +1,13 @@
-//! Expressions in x, and their values and derivatives on many points at once.
+//! Expressions in x, with their values and derivatives at many points at once.
 
 use crate::operators::{Binary, Unary};
 
-/// A node of an expression tree.
+/// Node of an expression tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Node {
-    /// A constant, to be fitted.
+    /// Constant, to be fitted.
     Constant(f64),
-    /// The variable.
+    /// Variable x.
     Time,
     Unary(Unary),
     Binary(Binary),
@@ -23,7 +23,7 @@ impl Node {
     }
 }
 
-/// An expression tree, its nodes in postfix order: operands before their operator, the root last.
+/// Expression tree, with its nodes in postfix order: operands before their operator, the root last.
 ///
 /// Invariant: every operator finds its operands, and one value is left.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,14 +31,14 @@ pub(crate) struct Expression {
     nodes: Vec<Node>,
 }
 
-/// Columns of numbers, one for each node of the expression at work and a point in each row; kept between
-/// evaluations to save allocating them.
+/// Columns of numbers, one per node of the current expression and with one point per row. They are kept
+/// between evaluations to avoid allocations.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
     values: Vec<Vec<f64>>,
     /// Derivatives of the root by each node.
     adjoints: Vec<Vec<f64>>,
-    /// Node indices whose values wait for their operator.
+    /// Indices of nodes whose values wait for their operator.
     stack: Vec<usize>,
     /// Indices of the operands of each node.
     operands: Vec<[usize; 2]>,
@@ -68,12 +68,12 @@ impl Expression {
         &self.nodes
     }
 
-    /// Number of nodes: the complexity.
+    /// Returns the number of nodes: the complexity.
     pub(crate) fn complexity(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The index range of the subtree whose root is the node at an index.
+    /// Returns the index range of the subtree whose root is the node at an index.
     pub(crate) fn subtree(&self, root: usize) -> std::ops::Range<usize> {
         let mut needed = 1;
         let mut start = root + 1;
@@ -88,19 +88,19 @@ impl Expression {
         start..root + 1
     }
 
-    /// The subtree whose root is the node at an index, as an expression of its own.
+    /// Returns the subtree whose root is the node at an index as a separate expression.
     pub(crate) fn take(&self, root: usize) -> Self {
         Self { nodes: self.nodes.get(self.subtree(root)).unwrap_or(&self.nodes).to_vec() }
     }
 
-    /// This expression with the subtree at an index replaced.
+    /// Returns this expression with the subtree at an index replaced.
     pub(crate) fn with_subtree(&self, root: usize, replacement: &Self) -> Self {
         let mut nodes = self.nodes.clone();
         nodes.splice(self.subtree(root), replacement.nodes.iter().copied());
         Self { nodes }
     }
 
-    /// This expression with the node at an index replaced by one of the same arity.
+    /// Returns this expression with the node at an index replaced by one of the same arity.
     pub(crate) fn with_node(mut self, index: usize, replacement: Node) -> Self {
         if let Some(node) = self.nodes.get_mut(index).filter(|node| node.arity() == replacement.arity()) {
             *node = replacement;
@@ -108,7 +108,7 @@ impl Expression {
         self
     }
 
-    /// The constants, in order.
+    /// Returns the constants, in order.
     pub(crate) fn constants(&self) -> impl Iterator<Item = f64> {
         self.nodes.iter().filter_map(|node| match node {
             Node::Constant(value) => Some(*value),
@@ -125,7 +125,7 @@ impl Expression {
         places.zip(constants).for_each(|(place, constant)| *place = *constant);
     }
 
-    /// What two expressions share that differ in their constants only.
+    /// Returns a key that is equal for two expressions that differ only in their constants.
     pub(crate) fn structure(&self) -> Vec<u8> {
         self.nodes
             .iter()
@@ -138,8 +138,8 @@ impl Expression {
             .collect()
     }
 
-    /// The expression with every subtree of constants alone replaced by its value: the same function, and
-    /// no two constants where one does.
+    /// Returns the expression with every subtree of constants replaced by its value: the same function, with
+    /// one constant where there were several.
     pub(crate) fn folded(&self) -> Self {
         let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
         for &node in &self.nodes {
@@ -161,9 +161,9 @@ impl Expression {
         Self { nodes }
     }
 
-    /// Whether the expression is finite on all of 0..1, as far as interval arithmetic can tell: no pole
-    /// and no edge of a domain lies between the points. A refused expression may still be sound, an
-    /// admitted one is.
+    /// Returns `true` if interval arithmetic proves that the expression is finite on all of 0..1: there is no
+    /// pole and no edge of a domain between the points. A rejected expression may still be sound; an accepted
+    /// one is.
     ///
     /// Reference: Keijzer, EuroGP 2003, LNCS 2610, 70, section 2.
     pub(crate) fn is_sound(&self) -> bool {
@@ -188,7 +188,7 @@ impl Expression {
 }
 
 impl Workspace {
-    /// The values of an expression at points.
+    /// Evaluates an expression at points.
     pub(crate) fn values(&mut self, expression: &Expression, points: &[f64]) -> &[f64] {
         let count = expression.nodes.len();
         if self.values.len() < count {
@@ -201,7 +201,7 @@ impl Workspace {
             let Some(column) = rest.first_mut() else { break };
             column.clear();
             debug_assert!(self.stack.len() >= node.arity(), "operands come before their operation");
-            // Never absent in a well-formed expression, which is the only kind that is made.
+            // Never absent in a well-formed expression; no other kind is created.
             let mut pop = || self.stack.pop().unwrap_or_default();
             let empty: &[f64] = &[];
             let operands = match node {
@@ -232,8 +232,9 @@ impl Workspace {
         self.values.get(count.wrapping_sub(1)).map_or(&[], |column| column)
     }
 
-    /// The derivatives by each constant, in order, of the expression that was evaluated last: exact, by
-    /// one pass from the root down. A node of a tree has one parent, so every derivative is a product.
+    /// Returns the exact derivatives by each constant, in order, of the expression that was evaluated last,
+    /// by one pass from the root down. A node of a tree has one parent, so that every derivative is a
+    /// product.
     pub(crate) fn derivatives(&mut self, expression: &Expression, points: usize) -> Vec<&[f64]> {
         let count = expression.nodes.len();
         if self.adjoints.len() < count {
@@ -282,7 +283,7 @@ impl Workspace {
 mod tests {
     use super::*;
 
-    /// (2·x + 0.5)² ÷ exp(0.3 − x) + log(sqrt(1.5)·sin(x + 0.1) + 1)
+    /// Sample expression (2·x + 0.5)² ÷ exp(0.3 − x) + log(sqrt(1.5)·sin(x + 0.1) + 1).
     fn sample() -> Expression {
         use Node::{Constant, Time};
         let binary = Node::Binary;

@@ -1,4 +1,4 @@
-//! From the evolution to the estimate.
+//! Estimate from the result of the evolution.
 
 use crate::basis::TangentSpace;
 use crate::config::SymbolicConfig;
@@ -36,7 +36,7 @@ impl Estimator for SymbolicConfig {
         }
         let found = if context.is_at_zero() { &Front::default() } else { &evolved.front };
         let front = whole_front(found, &data, &mut workspace);
-        // Where the line makes the constants run away, the next expression is asked.
+        // If the constants diverge with the line, the next expression is tried.
         let settled = front.by_preference(&data).find_map(|member| {
             let joined = with_line(member, &data, &mut workspace)?;
             Some((member, joined))
@@ -57,7 +57,7 @@ impl Estimator for SymbolicConfig {
     }
 }
 
-/// The front fitted to all peaks; a constant, should an odd envelope leave nothing else.
+/// Fits the front to all peaks; if an odd envelope leaves nothing, the front is a constant.
 fn whole_front(front: &Front, data: &Data, workspace: &mut Workspace) -> Front {
     let mut polished = front.polished(data, workspace);
     if polished.members().is_empty() {
@@ -69,13 +69,13 @@ fn whole_front(front: &Front, data: &Data, workspace: &mut Workspace) -> Front {
     polished
 }
 
-/// The expression with as much of a straight line a + b·x joined as it lacks, all constants fitted
-/// together from where they are.
+/// Adds the part of a straight line a + b·x that the expression lacks, and fits all constants together from
+/// their present values.
 ///
-/// Without it the slope of a bent expression would hold what its shape leaves over: it is fitted to the
-/// peaks, not to their slope. With it the residuals are orthogonal to every straight line, and the
-/// expression's projected slope is that of the best exponential. A line, or whatever has a free line in
-/// it, stays as it is. `None` where the constants then find no rest.
+/// Without the line the slope of a bent expression would depend on the misfit of its shape, since the
+/// expression is fitted to the peaks and not to their slope. With it the residuals are orthogonal to every
+/// straight line, and the expression's projected slope is that of the best exponential. An expression that
+/// contains a free line stays as it is. `None` if the constants then do not settle.
 fn with_line(chosen: &Member, data: &Data, workspace: &mut Workspace) -> Option<Expression> {
     let mut joined = chosen.expression.clone();
     let mut space: TangentSpace = tangent_space(&joined, data, workspace);
@@ -127,20 +127,20 @@ fn describe(expression: &Expression, data: &Data, stop: Stop, workspace: &mut Wo
     }
 }
 
-/// Whether the residuals of an expression tell of the scatter of the peaks.
+/// State of an expression's constants, which decides whether its residuals measure the scatter of the peaks.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Scatter {
-    /// Its constants were fitted.
+    /// The constants were fitted.
     Fitted,
-    /// They are as drawn.
+    /// The constants are as drawn.
     Unknown,
 }
 
-/// The expression at the times asked about: what its arithmetic gives there, infinite or not a number where
-/// that overflows or leaves a domain, and the other branch beyond a pole.
+/// Evaluates the expression at the query times with plain arithmetic: infinite or NaN where it overflows or
+/// leaves a domain, and on the other branch beyond a pole.
 ///
-/// The variance of a measured ln A is s²·(1 + gᵀ(JᵀJ)⁻¹g), g the derivatives by the constants that matter at
-/// that time and J those at the peaks: to first order, for the expression at hand.
+/// The variance of a measured ln A is s²·(1 + gᵀ(JᵀJ)⁻¹g), with g the derivatives by the effective constants
+/// at that time and J those at the peaks: to first order, for the given expression.
 fn predictions(
     expression: &Expression,
     data: &Data,
@@ -168,11 +168,11 @@ fn predictions(
     values.iter().zip(leverages).skip(data.len()).map(predict).collect()
 }
 
-/// The standard error of the projected slope, s/√Σ(x − x̄)², and Student's t on the peaks minus the
-/// constants that matter.
+/// Computes the standard error of the projected slope, s/√Σ(x − x̄)², with Student's t on the number of peaks
+/// minus that of effective constants.
 ///
-/// To first order in the scatter it is exact for the expression at hand, since the space of its
-/// derivatives holds every line. That the expression was chosen after a look at the data is not in it.
+/// To first order in the scatter it is exact for the given expression, since the space of its derivatives
+/// contains every line. It does not include the uncertainty from the choice of the expression by the data.
 fn uncertainty(
     estimate: &Estimate,
     expression: &Expression,
@@ -186,7 +186,7 @@ fn uncertainty(
     Uncertainty::students_t(estimate.decay_rate, data.scaling.rate_per_unit_time(std_error), degrees)
 }
 
-/// The front as a text.
+/// Writes the front as a text.
 fn report(front: &Front, chosen: &Member, joined: &Expression, data: &Data) -> String {
     let mut text = String::new();
     let equation = Equation::new(&chosen.expression, data);

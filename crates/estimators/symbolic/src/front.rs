@@ -1,10 +1,10 @@
-//! The Pareto front of error against complexity, and the choice from it.
+//! Pareto front of error against complexity, and the choice from it.
 
 use crate::constants::{Effort, HeldOut, fit_constants, held_out};
 use crate::data::Data;
 use crate::expression::{Expression, Workspace};
 
-/// An expression of the front.
+/// Expression of the front.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Member {
     pub(crate) expression: Expression,
@@ -13,11 +13,11 @@ pub(crate) struct Member {
     pub(crate) held_out: HeldOut,
 }
 
-/// Share of the loss that a more complex expression has to take off to stay on the front.
+/// Smallest relative decrease of the loss by which a more complex expression stays on the front.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// The expressions than which none of those met is both simpler and better: complexity rises and the
-/// loss falls from each to the next.
+/// Expressions for which none has been found that is both simpler and better: from each to the next the
+/// complexity rises and the loss falls.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Front {
     members: Vec<Member>,
@@ -54,8 +54,8 @@ impl Front {
         self.members.insert(place, Member { expression: expression.clone(), loss, held_out });
     }
 
-    /// The front with the constants of every expression fitted to all that rounding leaves, on these data;
-    /// without the expressions that have no best constants.
+    /// Returns the front with the constants of every expression fitted to these data as far as rounding
+    /// allows. Expressions without best constants are left out.
     pub(crate) fn polished(&self, data: &Data, workspace: &mut Workspace) -> Self {
         let mut front = Self::default();
         for member in &self.members {
@@ -68,14 +68,14 @@ impl Front {
         front
     }
 
-    /// The least held-out error on the front.
+    /// Returns the least held-out error on the front.
     pub(crate) fn least_held_out(&self) -> Option<HeldOut> {
         let errors = self.members.iter().map(|member| member.held_out);
         errors.min_by(|one, other| one.mean.total_cmp(&other.mean))
     }
 
-    /// The largest held-out error that counts as adequate: one standard error above the least. Errors
-    /// that rounding alone would leave count as none.
+    /// Returns the largest held-out error that counts as adequate: one standard error above the least. Errors
+    /// that are due to rounding alone count as zero.
     ///
     /// Reference: Breiman, Friedman, Olshen, Stone, Classification and Regression Trees (1984), section 3.4.3.
     fn bound(&self, data: &Data) -> f64 {
@@ -83,15 +83,15 @@ impl Front {
         least.max(data.rounding())
     }
 
-    /// The simplest adequate expression: the one with the fewest nodes among those whose held-out error is
-    /// within one standard error of the least.
+    /// Returns the simplest adequate expression: the one with the fewest nodes among those whose held-out
+    /// error is within one standard error of the least.
     pub(crate) fn simplest_adequate(&self, data: &Data) -> Option<&Member> {
         self.by_preference(data).next()
     }
 
-    /// The adequate expressions from the simplest on, then the others from the best on.
+    /// Returns the adequate expressions, the simplest first, then the others, the best first.
     pub(crate) fn by_preference(&self, data: &Data) -> impl Iterator<Item = &Member> {
-        // With no degree of freedom anywhere the bound is infinite, and the simplest comes first.
+        // If no expression has a degree of freedom, the bound is infinite, and the simplest comes first.
         let bound = self.bound(data);
         let adequate = self.members.iter().filter(move |member| member.held_out.mean <= bound);
         let others = self.members.iter().rev().filter(move |member| member.held_out.mean > bound);
@@ -140,7 +140,7 @@ mod tests {
         let found: Vec<_> =
             front.members().iter().map(|member| (member.expression.complexity(), member.loss)).collect();
         assert_eq!(found, [(1, 1.0), (2, 0.45), (3, 0.4)]);
-        // A perfect fit leaves no room for anything more complex.
+        // A perfect fit leaves no room for a more complex expression.
         front.offer(&bent(2), 0.0, &data, &mut workspace);
         assert_eq!(front.members().len(), 2);
     }

@@ -1,18 +1,18 @@
 //! Symbolic regression of the envelope by genetic programming.
 //!
-//! A population of expressions in the time, built from + − × ÷, exp, log, square root, square and
-//! constants, evolves: tournaments choose parents; crossover of subtrees, mutation of subtrees and of
-//! nodes, and hoisting make children; every child's constants are fitted by Levenberg–Marquardt on exact
-//! derivatives. The expressions than which none is both simpler and better make the front. An expression
-//! that is not finite on a peak, or that may have a pole between peaks, is rejected; no operator is
-//! "protected" into another function.
+//! A population of expressions in the time, built from + − × ÷, exp, log, square root, square and constants,
+//! evolves. Tournaments select parents; crossover of subtrees, mutation of subtrees and of nodes, and
+//! hoisting create children; every child's constants are fitted by Levenberg–Marquardt on exact derivatives.
+//! The front holds the expressions for which none is both simpler and better. An expression that is not
+//! finite on a peak, or that may have a pole between peaks, is rejected; no operator is "protected" by
+//! replacing it with another function.
 //!
-//! Of the front the simplest adequate expression is taken: the one with the fewest nodes whose held-out
-//! error (each peak left out in turn) is within one standard error of the least. λ is minus the slope of
-//! that expression, projected on a straight line over the peak times. So that this reads the data and
-//! not what the shape leaves over, the straight line that a bent expression lacks is joined to it and
-//! fitted with it; a line needs nothing and gives its own slope. Fitted values, predictions and the
-//! equation stated are those of the expression with its line.
+//! The result is the simplest adequate expression of the front: the one with the fewest nodes whose held-out
+//! error (each peak left out in turn) is within one standard error of the least. λ is minus the slope of that
+//! expression, projected on a straight line over the peak times. So that λ depends on the data and not on the
+//! misfit of the shape, the straight line that a bent expression lacks is added to it and fitted with it; a
+//! line needs no addition and gives its own slope. Fitted values, predictions and the stated equation are
+//! those of the expression with its line.
 //!
 //! Reference: Koza, Genetic Programming (MIT Press 1992); Kommenda, Burlacu, Kronberger, Affenzeller, Genetic
 //! Programming and Evolvable Machines 21 (2020) 471, for the fitted constants.
@@ -37,7 +37,7 @@ pub use config::SymbolicConfig;
 
 use estimator::{Entry, Estimator, Tag};
 
-/// The registry's line.
+/// Registry entry of the symbolic regression.
 pub const ENTRY: Entry = Entry {
     id: "symbolic",
     paper_number: Some(16),

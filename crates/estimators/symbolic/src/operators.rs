@@ -1,11 +1,11 @@
-//! The operators of expressions.
+//! Operators of expressions.
 //!
-//! None is "protected": an operator outside of its domain gives what the arithmetic of doubles gives, and
-//! the expression is rejected for it.
+//! None is "protected": outside of its domain an operator gives the result of double arithmetic, and the
+//! expression is rejected for it.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// An operator with one operand.
+/// Operator with one operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Unary {
     Exp,
@@ -15,7 +15,7 @@ pub(crate) enum Unary {
     Sine,
 }
 
-/// An operator with two operands.
+/// Operator with two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Binary {
     Add,
@@ -25,7 +25,7 @@ pub(crate) enum Binary {
 }
 
 impl Unary {
-    /// The operators drawn from; the sine comes last, so that it can be left out.
+    /// Operators that are drawn; the sine comes last, so that it can be left out.
     pub(crate) const ALL: [Self; 5] = [Self::Exp, Self::Log, Self::SquareRoot, Self::Square, Self::Sine];
 
     pub(crate) fn value(self, a: f64) -> f64 {
@@ -38,7 +38,7 @@ impl Unary {
         }
     }
 
-    /// Appends the values at many operands, the choice of operator outside of the loop.
+    /// Appends the values for many operands; the operator is selected outside of the loop.
     pub(crate) fn apply(self, operands: &[f64], values: &mut Vec<f64>) {
         match self {
             Self::Exp => values.extend(operands.iter().map(|a| a.exp())),
@@ -49,7 +49,7 @@ impl Unary {
         }
     }
 
-    /// The derivative at an operand whose value is known.
+    /// Returns the derivative at an operand whose value is known.
     pub(crate) fn slope(self, a: f64, value: f64) -> f64 {
         match self {
             Self::Exp => value,
@@ -60,7 +60,7 @@ impl Unary {
         }
     }
 
-    /// Bounds of the value where the operand lies in a range; `None` where it leaves the domain.
+    /// Returns the bounds of the value for an operand in a range; `None` if the range leaves the domain.
     pub(crate) fn range(self, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
         match self {
             Self::Exp => Some([low.exp(), high.exp()]),
@@ -76,7 +76,7 @@ impl Unary {
         }
     }
 
-    /// The name that equations are written with.
+    /// Returns the name used in equations.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Exp => "exp",
@@ -100,7 +100,7 @@ impl Binary {
         }
     }
 
-    /// The derivative by the left operand.
+    /// Returns the derivative by the left operand.
     pub(crate) fn left_slope(self, b: f64) -> f64 {
         match self {
             Self::Add | Self::Subtract => 1.0,
@@ -109,7 +109,7 @@ impl Binary {
         }
     }
 
-    /// The derivative by the right operand.
+    /// Returns the derivative by the right operand.
     pub(crate) fn right_slope(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Add => 1.0,
@@ -119,7 +119,7 @@ impl Binary {
         }
     }
 
-    /// Bounds of the value where the operands lie in ranges; `None` where it leaves the domain.
+    /// Returns the bounds of the value for operands in ranges; `None` if the ranges leave the domain.
     pub(crate) fn range(self, [a, b]: [f64; 2], [c, d]: [f64; 2]) -> Option<[f64; 2]> {
         let corners = |at: [f64; 4]| {
             Some([

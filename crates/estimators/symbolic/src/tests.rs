@@ -18,19 +18,19 @@ fn scatter(i: usize) -> f64 {
     (i * 7919 % 101) as f64 / 101.0 - 0.5
 }
 
-/// An envelope of 69 peaks at uneven times around a curve.
+/// Returns an envelope of 69 peaks at uneven times around a curve.
 fn around(curve: impl Fn(f64) -> f64, width: f64) -> Envelope {
     let times: Vec<f64> = (0..69).map(|i| 0.288 * i as f64 + 0.1 * scatter(i + 31)).collect();
     let logs = times.iter().enumerate().map(|(i, &t)| curve(t) + width * scatter(i)).collect();
     Envelope::new(times, logs, 21.8).unwrap()
 }
 
-/// An envelope that is no exponential: it bends and scatters.
+/// Returns an envelope that is no exponential: it bends and scatters.
 fn envelope() -> Envelope {
     around(|t| -0.6 - 0.25 * t + 0.004 * t * t, 0.2)
 }
 
-/// The slope of the least-squares line and its standard error, from the textbook.
+/// Returns minus the slope of the least-squares line and its standard error, by the textbook formulas.
 fn line(envelope: &Envelope) -> (f64, f64) {
     let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
     let n = t.len() as f64;
@@ -130,7 +130,7 @@ fn an_exponential_is_recovered_as_a_line() {
 
 #[test]
 fn a_bend_is_discovered() {
-    // Viscous damping with dry friction: the amplitude falls by a constant rate as well.
+    // Viscous damping with dry friction: the amplitude also falls by a constant rate.
     let dry = |t: f64| (1.2 * (-0.1 * t).exp() - 0.1).ln();
     let bent = around(dry, 0.02);
     let straight: f64 = {
@@ -182,7 +182,7 @@ fn the_interval_covers_as_often_as_it_says() {
     let covered = (0..trials)
         .filter(|&trial| {
             let times: Vec<f64> = (0..20 + trial % 60).map(|i| 0.288 * i as f64).collect();
-            // A sum of twelve uniform numbers is Gaussian enough.
+            // A sum of twelve uniform numbers is close enough to a Gaussian.
             let mut scatter = || (0..12).map(|_| generator.random::<f64>()).sum::<f64>() - 6.0;
             let logs = times.iter().map(|t| -0.6 - 0.19 * t + 0.2 * scatter()).collect();
             let envelope = Envelope::new(times, logs, 21.8).unwrap();
@@ -190,7 +190,7 @@ fn the_interval_covers_as_often_as_it_says() {
             (low..=high).contains(&0.19)
         })
         .count();
-    // 190 expected, standard deviation 3.1.
+    // 190 are expected, with a standard deviation of 3.1.
     assert!((180..=199).contains(&covered), "{covered}");
 }
 
@@ -229,7 +229,7 @@ fn at_the_peaks_predictions_are_the_fitted_function() {
     for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
         assert!((prediction.log_amplitude - fitted).abs() < 1e-12);
     }
-    // Asking changes nothing else.
+    // Asking for predictions changes nothing else.
     assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(&envelope, 3));
 }
 
@@ -272,16 +272,16 @@ fn predictive_intervals_hold_fresh_peaks() {
         .filter(|&trial| {
             let times: Vec<f64> = (0..60).map(|i| 0.3 * f64::from(i)).collect();
             let logs = times.iter().map(|&t| truth(t) + scatter()).collect();
-            // From the first peak to a quarter of the record beyond the last.
+            // Times from the first peak to a quarter of the record beyond the last.
             let asked = 22.0 * f64::from(trial) / f64::from(trials);
             let envelope = Envelope::new(times, logs, 21.8).unwrap();
             let prediction = fit_at(&envelope, u64::from(trial), &[asked]).predictions[0];
             let off = truth(asked) + scatter() - prediction.log_amplitude;
-            // Student's t with 58 degrees of freedom.
+            // Quantile of Student's t with 58 degrees of freedom.
             off.abs() <= 2.0017 * prediction.std_error.unwrap()
         })
         .count();
     let share = held as f64 / f64::from(trials);
-    // Four standard deviations of such a share.
+    // The bounds are four standard deviations of such a share.
     assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(trials)).sqrt(), "{share}");
 }

@@ -1,15 +1,15 @@
-//! How expressions come into being, and from each other.
+//! Creation of expressions, at random and from other expressions.
 
 use crate::expression::{Expression, Node};
 use crate::operators::{Binary, Unary};
 use rand::{Rng, RngExt};
 
-/// What expressions are drawn from.
+/// Grammar of random expressions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Grammar {
-    /// Depth of the deepest drawn tree; a leaf has depth 0.
+    /// Depth of the deepest random tree; a leaf has depth 0.
     pub(crate) depth: usize,
-    /// Whether the sine is one of the functions.
+    /// `true` if the sine is one of the functions.
     pub(crate) sine: bool,
 }
 
@@ -22,7 +22,7 @@ const CONSTANT_SHARE: f64 = 0.5;
 /// Share of leaves among the nodes of a grown tree, above its depth.
 const EARLY_LEAVES: f64 = 0.3;
 
-/// A whole number below `end`; 0 where there is none.
+/// Returns a random whole number below `end`; 0 if there is none.
 fn below<G: Rng>(end: usize, generator: &mut G) -> usize {
     generator.random_range(0..end.max(1))
 }
@@ -32,8 +32,8 @@ fn one_of<T: Copy, G: Rng>(from: &[T], otherwise: T, generator: &mut G) -> T {
 }
 
 impl Grammar {
-    /// The `index`-th tree of a population, ramped half and half: depths from 1 up in turn, every other
-    /// tree full, the others grown.
+    /// Creates the `index`-th tree of a population, ramped half and half: depths from 1 up in turn, with
+    /// every other tree full and the others grown.
     ///
     /// Reference: Koza, Genetic Programming (MIT Press 1992), section 6.2.
     pub(crate) fn ramped<G: Rng>(&self, index: usize, generator: &mut G) -> Expression {
@@ -41,7 +41,7 @@ impl Grammar {
         self.draw(depth, index.is_multiple_of(2), generator)
     }
 
-    /// A drawn tree: `full` has all of its leaves at the depth.
+    /// Draws a tree; a `full` one has all of its leaves at the given depth.
     pub(crate) fn draw<G: Rng>(&self, depth: usize, full: bool, generator: &mut G) -> Expression {
         let leaf = depth == 0 || (!full && generator.random_bool(EARLY_LEAVES));
         if leaf {
@@ -77,7 +77,7 @@ impl Grammar {
         one_of(&Binary::ALL, Binary::Add, generator)
     }
 
-    /// Puts a subtree of the other parent in the place of one of the first.
+    /// Replaces one subtree of the first parent by a subtree of the other parent.
     pub(crate) fn crossover<G: Rng>(
         &self,
         parent: &Expression,
@@ -89,8 +89,8 @@ impl Grammar {
         parent.with_subtree(place, &graft)
     }
 
-    /// Puts a drawn subtree in the place of one, or the whole of it beside a drawn one: a tree can grow
-    /// at its root, too.
+    /// Replaces a subtree by a random one, or combines the whole tree with a random one, so that a tree can
+    /// also grow at its root.
     pub(crate) fn mutate_subtree<G: Rng>(&self, parent: &Expression, generator: &mut G) -> Expression {
         let drawn = self.draw(2, false, generator);
         let place = below(parent.complexity() + 1, generator);
@@ -100,14 +100,14 @@ impl Grammar {
         parent.with_subtree(place, &drawn)
     }
 
-    /// Replaces one node by another of the same arity; a constant may move instead.
+    /// Replaces one node by another of the same arity; a constant may be changed instead.
     pub(crate) fn mutate_point<G: Rng>(&self, parent: &Expression, generator: &mut G) -> Expression {
         let place = below(parent.complexity(), generator);
         let node = match parent.nodes().get(place) {
             Some(Node::Unary(_)) => Node::Unary(self.unary(generator)),
             Some(Node::Binary(_)) => Node::Binary(self.binary(generator)),
             Some(Node::Constant(value)) if generator.random_bool(0.5) => {
-                // Anywhere from minus to plus twice itself: another start for the fit.
+                // The new value is between minus and plus twice the old one: another start for the fit.
                 Node::Constant(value * generator.random_range(-2.0..2.0))
             }
             _ => self.leaf(generator),
@@ -115,7 +115,7 @@ impl Grammar {
         parent.clone().with_node(place, node)
     }
 
-    /// Leaves a subtree alone.
+    /// Returns one subtree alone.
     ///
     /// Reference: Poli, Langdon, McPhee, A Field Guide to Genetic Programming (2008), section 5.2.
     pub(crate) fn hoist<G: Rng>(&self, parent: &Expression, generator: &mut G) -> Expression {
@@ -131,7 +131,7 @@ mod tests {
 
     const GRAMMAR: Grammar = Grammar { depth: 4, sine: true };
 
-    /// Every operator has its operands, and one value is left.
+    /// Returns `true` if every operator has its operands and one value is left.
     fn is_tree(expression: &Expression) -> bool {
         let mut depth: isize = 0;
         let fits = expression.nodes().iter().all(|node| {

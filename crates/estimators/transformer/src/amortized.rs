@@ -1,4 +1,4 @@
-//! The network that learns to read envelopes in general.
+//! Amortized network: trained on simulated envelopes, applied to measured ones.
 
 use crate::config::{FEED_FORWARD_WIDTH, HEAD_WIDTH, HEADS, INITIAL_SCALE, LAYERS};
 use crate::network::{Network, Size, time_encoding};
@@ -11,18 +11,18 @@ use seed::Seed;
 use serde::Deserialize;
 use settings::Field;
 
-/// The network's own settings; those of its training are [`neural::amortized::fields`].
+/// Settings of the network; those of its training are [`neural::amortized::fields`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct AmortizedTransformerConfig {
-    /// Layers of attention and feed-forward.
+    /// Number of layers of attention and feed-forward.
     pub layers: usize,
-    /// Heads of the attention.
+    /// Number of attention heads.
     pub heads: usize,
-    /// Width of a head; the network's own width is heads times this.
+    /// Width of a head; the width of the network is the number of heads times this.
     pub head_width: usize,
     /// Width between the two linear maps of the feed-forward part.
     pub feed_forward_width: usize,
-    /// Factor on the drawn start values of the weights before the head.
+    /// Factor on the random start values of the weights before the head.
     pub initial_scale: f64,
 }
 
@@ -31,7 +31,7 @@ const SOURCE_OF_LAYERS: &str =
 
 const SOURCE_OF_LENGTH: &str = "the attention costs as the square of the length; means over runs cost 1/runs² of the accuracy, 1.2 % at 9";
 
-/// The configuration keys.
+/// Configuration keys.
 const FIELDS: &[Field] = &[
     Field { default: settings::Default::Integer(2), source: SOURCE_OF_LAYERS, ..LAYERS },
     HEADS,
@@ -53,7 +53,7 @@ const FIELDS: &[Field] = &[
     fields::BEND,
 ];
 
-/// The registry's line of the network that is trained on simulated envelopes.
+/// Registry entry of the network that is trained on simulated envelopes.
 pub const AMORTIZED_ENTRY: Entry = Entry {
     id: "transformer-amortized",
     paper_number: None,
@@ -73,22 +73,22 @@ pub const AMORTIZED_ENTRY: Entry = Entry {
     },
 };
 
-/// The network of [`ENTRY`](crate::ENTRY), reading where in the record it is.
+/// Network of [`ENTRY`](crate::ENTRY) whose input includes the position in the record.
 #[derive(Module, Debug)]
 pub struct Reader {
     network: Network,
 }
 
-/// Numbers that describe an entry, besides its time.
+/// Number of features of an entry, besides its time.
 const FEATURES: usize = 3;
 
-/// Length of the record in the units of the encoded time, whatever the number of peaks: four periods of
-/// the fastest sine.
+/// Length of the record in the units of the encoded time, for any number of peaks: four periods of the
+/// fastest sine.
 const RECORD: f64 = 8.0 * std::f64::consts::PI;
 
 impl Encoder for Reader {
-    /// z, its change since the entry before, the logarithm of the mean time between entries; then the
-    /// encoding of the entry's time.
+    /// Returns z of each entry, its change since the previous entry, and the logarithm of the mean time
+    /// between entries; then the encoding of the entry's time.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         let width = self.network.width();
         // Without sequences there are no entries.
@@ -162,8 +162,8 @@ mod tests {
         assert_eq!(input.dims(), [2, 3, 7]);
         let found = values(input).unwrap();
         assert_eq!(found[..21], found[21..]);
-        // The mean interval is 1; a quarter of the record is one period of the fastest sine, a hundredth
-        // of one of the other.
+        // The mean interval is 1; a quarter of the record is one period of the fastest sine and a hundredth
+        // of a period of the other.
         let slow = std::f64::consts::TAU / 100.0;
         let expected = [0.0, -1.2, 0.0, 0.0, 1.0, slow.sin(), slow.cos()];
         for (found, expected) in found[7..14].iter().zip(expected) {

@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use crate::network::{FEATURES, SAID, Size};
 use serde::Deserialize;
@@ -7,28 +7,28 @@ use settings::{Default, Field, Kind};
 /// Settings of the transformer. The ranges and defaults are in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct TransformerConfig {
-    /// Layers of attention and feed-forward.
+    /// Number of layers of attention and feed-forward.
     pub layers: usize,
-    /// Heads of the attention.
+    /// Number of attention heads.
     pub heads: usize,
-    /// Width of a head; the network's own width is heads times this.
+    /// Width of a head; the width of the network is the number of heads times this.
     pub head_width: usize,
     /// Width between the two linear maps of the feed-forward part.
     pub feed_forward_width: usize,
-    /// Most entries the network reads.
+    /// Most entries that the network reads.
     pub longest_sequence: usize,
     /// Most L-BFGS steps.
     pub max_steps: u64,
-    /// Curvature pairs L-BFGS remembers.
+    /// Number of curvature pairs that L-BFGS stores.
     pub memory: usize,
-    /// Training has converged when the gradient has fallen to this share of its length at the start.
+    /// Share of its initial length to which the gradient has to fall for the training to have converged.
     pub gradient_tolerance: f64,
-    /// Factor on the drawn start values of the weights before the head.
+    /// Factor on the random start values of the weights before the head.
     pub initial_scale: f64,
 }
 
 impl TransformerConfig {
-    /// The network that is trained on the one envelope it reads.
+    /// Returns the dimensions of the network that is trained on the one envelope it reads.
     pub(crate) fn size(&self) -> Size {
         Size {
             features: FEATURES,
@@ -41,7 +41,7 @@ impl TransformerConfig {
     }
 }
 
-/// Layers, each of self-attention and feed-forward, each followed by a layer norm.
+/// Number of layers of self-attention and feed-forward, each followed by a layer norm.
 pub(crate) const LAYERS: Field = Field {
     key: "layers",
     kind: Kind::Integer { min: 1, max: 8 },
@@ -51,7 +51,7 @@ pub(crate) const LAYERS: Field = Field {
     source: "1 to 4 agree to rounding; one trains fastest",
 };
 
-/// Heads of the attention.
+/// Number of attention heads.
 pub(crate) const HEADS: Field = Field {
     key: "heads",
     kind: Kind::Integer { min: 1, max: 16 },
@@ -61,7 +61,7 @@ pub(crate) const HEADS: Field = Field {
     source: "a small transformer for a short sequence",
 };
 
-/// Width of a head; the network's own width is heads times this.
+/// Width of a head; the width of the network is the number of heads times this.
 pub(crate) const HEAD_WIDTH: Field = Field {
     key: "head_width",
     kind: Kind::Integer { min: 1, max: 64 },
@@ -71,7 +71,7 @@ pub(crate) const HEAD_WIDTH: Field = Field {
     source: "a small transformer for a short sequence",
 };
 
-/// Width between the two linear maps of the feed-forward part, with tanh there.
+/// Width between the two linear maps of the feed-forward part, where the tanh is applied.
 pub(crate) const FEED_FORWARD_WIDTH: Field = Field {
     key: "feed_forward_width",
     kind: Kind::Integer { min: 1, max: 1024 },
@@ -81,7 +81,7 @@ pub(crate) const FEED_FORWARD_WIDTH: Field = Field {
     source: "twice the network's width",
 };
 
-/// Factor on the drawn start values of the weights before the head.
+/// Factor on the random start values of the weights before the head.
 pub(crate) const INITIAL_SCALE: Field = Field {
     key: "initial_scale",
     kind: Kind::Float { min: 1e-3, max: 10.0 },
@@ -91,7 +91,7 @@ pub(crate) const INITIAL_SCALE: Field = Field {
     source: "Glorot, Bengio 2010",
 };
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     LAYERS,
     HEADS,

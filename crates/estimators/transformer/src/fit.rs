@@ -1,4 +1,4 @@
-//! Training.
+//! Training of the network.
 
 use crate::config::TransformerConfig;
 use crate::network::Network;

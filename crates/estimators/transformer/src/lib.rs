@@ -1,20 +1,18 @@
 //! Transformer that attends over the envelope's peaks.
 //!
-//! Every peak is an entry: its ln A through a linear embedding, plus sines and cosines of its time. burn's
-//! transformer encoder lets the entries attend to each other; a linear head without a bias says a level
-//! and a decay rate from the mean of what it gives. The decoder is physics, ln A(t) = ln A₀ − λt, and the
-//! loss the mean squared error of the peaks it reconstructs. λ is the decoder's. Training is by L-BFGS on
-//! all weights from random start values; Adam takes hundreds of steps to the same digits.
+//! Every peak is an entry: a linear embedding of its ln A, plus sines and cosines of its time. burn's
+//! transformer encoder lets the entries attend to each other; a linear head without a bias computes a level
+//! and a decay rate from the mean of its outputs. The decoder is the physical law ln A(t) = ln A₀ − λt, and
+//! the loss is the mean squared error of the reconstructed peaks. λ is the decoder's. All weights are trained
+//! by L-BFGS from random start values; Adam needs hundreds of steps for the same digits.
 //!
-//! Times enter by their encoding only, so the order in which the peaks are given tells the network
-//! nothing.
+//! Times enter only by their encoding, so that the order of the peaks has no effect on the network.
 //!
-//! The network is trained on the one envelope it is asked about, so that its weights hold an answer, not
-//! a skill. Its minimum is the exponential that fits best in the sense of least squares, and there it
-//! arrives to the last digits.
+//! The network is trained on the one envelope that it has to fit, so that its weights hold an answer and not
+//! a general skill. Its minimum is the least-squares exponential, which it reaches to the last digits.
 //!
-//! [`AMORTIZED_ENTRY`] is the same network with a skill instead: trained on simulated envelopes only, then
-//! shown one it never saw ([`neural::amortized`]).
+//! [`AMORTIZED_ENTRY`] is the same network as an amortized estimator: trained on simulated envelopes only,
+//! then applied to an envelope it never saw ([`neural::amortized`]).
 //!
 //! Reference: Vaswani et al., Attention is all you need, NeurIPS 30 (2017).
 
@@ -32,7 +30,7 @@ pub use config::TransformerConfig;
 
 use estimator::{Entry, Estimator, Tag};
 
-/// The registry's line.
+/// Registry entry of the network trained on one envelope.
 pub const ENTRY: Entry = Entry {
     id: "transformer",
     paper_number: Some(21),

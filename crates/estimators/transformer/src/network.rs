@@ -1,4 +1,4 @@
-//! The network.
+//! Network: burn's transformer encoder with a linear head.
 
 use burn::module::Module;
 use burn::nn::activation::ActivationConfig;
@@ -10,28 +10,28 @@ use neural::{Encoder, NamedTensor, Sequence, named_parameters};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// What a network is built for.
+/// Dimensions of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Size {
-    /// Numbers that describe an entry, besides its time.
+    /// Number of features of an entry, besides its time.
     pub(crate) features: usize,
     pub(crate) layers: usize,
     pub(crate) heads: usize,
     pub(crate) head_width: usize,
     pub(crate) feed_forward_width: usize,
-    /// Numbers that the network says.
+    /// Number of outputs.
     pub(crate) says: usize,
 }
 
-/// Numbers that describe an entry, and numbers said, where a network is trained on the one envelope it
+/// Number of features of an entry, and of outputs, for a network that is trained on the one envelope it
 /// reads.
 pub(crate) const FEATURES: usize = 1;
 pub(crate) const SAID: usize = 2;
 
-/// burn's transformer encoder over the entries of the sequence, the mean of what it gives, and a linear
-/// head.
+/// Network of burn's transformer encoder over the entries of the sequence, the mean of its outputs, and a
+/// linear head.
 ///
-/// The head has no bias: whatever the network says comes from what it has read.
+/// The head has no bias, so that every output depends on the input.
 #[derive(Module, Debug)]
 pub(crate) struct Network {
     embedding: Linear,
@@ -40,10 +40,12 @@ pub(crate) struct Network {
 }
 
 impl Network {
-    /// A network of the given sizes, all of it zero but the factors of the layer norms, which are one.
+    /// Creates a network of the given size, with all parameters zero except the factors of the layer norms,
+    /// which are one.
     ///
-    /// The activation is tanh, smooth as a quasi-Newton method wants it; burn's error function, hence its
-    /// GELU, has five digits only. Nothing is dropped out: the loss has to be a function.
+    /// The activation is tanh, which is smooth as a quasi-Newton method needs it. burn's error function, and
+    /// hence its GELU, has five digits only. There is no dropout: the loss has to be a function of the
+    /// parameters.
     pub(crate) fn zeros(size: Size, device: &Device) -> Self {
         let width = size.heads * size.head_width;
         let linear = |inputs, outputs| {
@@ -60,12 +62,12 @@ impl Network {
         }
     }
 
-    /// Start values in the order of the flat list.
+    /// Draws start values in the order of the flat list.
     ///
-    /// Weights normal with variance 2/(inputs + outputs) (Glorot, Bengio, AISTATS 2010) times `scale`;
-    /// biases zero, factors of the layer norms one. The head's weights are uniform within ±1/(2·width);
-    /// since the layer norm before it leaves a vector no longer than √width, the untrained rate lies in
-    /// −0.5..0.5.
+    /// Weights are normal with variance 2/(inputs + outputs) (Glorot, Bengio, AISTATS 2010), times `scale`.
+    /// Biases are zero, and factors of the layer norms are one. The head's weights are uniform within
+    /// ±1/(2·width); since the layer norm before it gives a vector of length at most √width, the untrained
+    /// rate lies in −0.5..0.5.
     pub(crate) fn draw(&self, scale: f64, generator: &mut impl Rng) -> Result<Vec<f64>, FitError> {
         let mut drawn = Vec::new();
         for NamedTensor { name, shape, values } in named_parameters(self)? {
@@ -85,17 +87,18 @@ impl Network {
         Ok(drawn)
     }
 
-    /// Length of an entry's vector, and of the encoding of its time.
+    /// Returns the length of an entry's vector, and of the encoding of its time.
     pub(crate) fn width(&self) -> usize {
         self.encoder.d_model
     }
 }
 
-/// Sines and cosines of a time, in units of the mean interval where that is the unit: of `width` numbers the pair k is
-/// sin(time·ω), cos(time·ω) with ω = 10,000^(−2k/width).
+/// Returns `width` sines and cosines of a time: the pair k is sin(time·ω), cos(time·ω) with ω =
+/// 10,000^(−2k/width). The time is in units of the mean interval, or in other units for the amortized
+/// network.
 ///
-/// For peaks at even times it is the encoding of the position in the sequence, as published; for uneven
-/// ones it follows the clock.
+/// For peaks at even times this is the published encoding of the position in the sequence; for uneven times
+/// it follows the clock.
 ///
 /// Reference: Vaswani et al., NeurIPS 30 (2017), section 3.5.
 pub(crate) fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64> {
@@ -107,12 +110,12 @@ pub(crate) fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64
 }
 
 impl Encoder for Network {
-    /// z, then the encoding of the entry's time since the first.
+    /// Returns z of each entry, then the encoding of its time since the first entry.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = |sequence: &Sequence| -> Vec<f64> {
-            // A sequence without entries has no feature either.
+            // A sequence without entries has no features either.
             let first = sequence.times.first().copied().unwrap_or(0.0);
             let interval = sequence.mean_interval();
             let entries = sequence.times.iter().zip(&sequence.values);
@@ -188,14 +191,14 @@ mod tests {
         for (one, other) in sorted.iter().zip(&shuffled) {
             assert!((one - other).abs() < 1e-14, "{one} {other}");
         }
-        // It does read which value belongs to which time.
+        // The assignment of values to times has an effect.
         let swapped = Sequence { values: vec![0.5, 1.3, -0.6, -1.2], ..sequence() };
         assert!((said(&network, &swapped)[0] - sorted[0]).abs() > 1e-6);
     }
 
     #[test]
     fn entries_attend_to_each_other() {
-        // Another value at one entry changes what the network makes of the others.
+        // A changed value at one entry changes the network's outputs for the other entries.
         let network = network(3, 1.0);
         let changed = Sequence { values: vec![1.3, 0.5, -0.6, 2.0], ..sequence() };
         let read = |sequence: &Sequence| {

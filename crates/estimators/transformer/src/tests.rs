@@ -1,4 +1,4 @@
-//! Tests of whole fits: those that every network trained on one envelope has to pass.
+//! Tests of whole fits, shared by all networks that are trained on one envelope.
 
 #[path = "../../../neural/testing/reconstruction.rs"]
 mod reconstruction;

@@ -1,4 +1,4 @@
-//! The settings.
+//! Settings of the estimator.
 
 use serde::Deserialize;
 use settings::{Default, Field, Kind, Resolved, SettingsError};
@@ -8,16 +8,16 @@ use sparse::config::{EVIDENCE, LIBRARY, MAX_STEPS, SETTLE_TOLERANCE, check_libra
 /// Settings of the weak-form sparse identification. The ranges and defaults are in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct WeakSindyConfig {
-    /// Candidate terms of d ln A/dt, by name: `1`, `1/A`, `A`, `A^2`, `ln A`, `(ln A)^2`, `t`. The
-    /// constant is always among them, named or not.
+    /// Candidate terms of d ln A/dt, by name: `1`, `1/A`, `A`, `A^2`, `ln A`, `(ln A)^2`, `t`. The constant
+    /// is always included, named or not.
     pub library: Vec<String>,
     /// Most test functions.
     pub test_functions: usize,
     /// Exponent p of the test functions (1 − u²)^p.
     pub exponent: i32,
-    /// Where the terms are evaluated: along the law's `trajectory`, or at the measured `peaks`.
+    /// Points at which the terms are evaluated: along the law's `trajectory`, or at the measured `peaks`.
     pub terms_along: TermsAlong,
-    /// How far a richer law has to lower the information criterion.
+    /// Amount by which a richer law has to lower the information criterion.
     pub evidence: f64,
     /// Largest change of the trajectory, as a share of the spread of ln A, at which a law has settled.
     pub settle_tolerance: f64,
@@ -25,34 +25,34 @@ pub struct WeakSindyConfig {
     pub max_steps: u64,
 }
 
-/// Where the terms of a law are evaluated.
+/// Points at which the terms of a law are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TermsAlong {
     /// Along the law's own trajectory, until it reproduces itself.
     Trajectory,
-    /// At the measured peaks, their scatter in the covariance: WENDy as published.
+    /// At the measured peaks, with their scatter in the covariance: WENDy as published.
     Peaks,
 }
 
 impl WeakSindyConfig {
-    /// The settings of a checked configuration.
+    /// Reads the settings from a checked configuration.
     ///
     /// # Errors
-    /// [`SettingsError::UnknownName`] for a term that is not known.
+    /// [`SettingsError::UnknownName`] for an unknown term.
     pub(crate) fn read(settings: &Resolved) -> Result<Self, SettingsError> {
         let config: Self = settings.section("estimator")?;
         check_library(&config.library, settings)?;
         Ok(config)
     }
 
-    /// The terms, each once, in the order of [`Term::ALL`].
+    /// Returns the terms, each once, in the order of [`Term::ALL`].
     pub(crate) fn terms(&self) -> impl Iterator<Item = Term> + '_ {
         terms(&self.library)
     }
 }
 
-/// The configuration keys.
+/// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     LIBRARY,
     Field {

@@ -1,4 +1,4 @@
-//! The path of laws, and the estimate.
+//! Path of laws, and the estimate.
 
 use crate::config::{TermsAlong, WeakSindyConfig};
 use crate::sloped::Sloped;
@@ -13,10 +13,11 @@ use sparse::{
     solve,
 };
 
-/// Passes after which a law that has not settled will not.
+/// Most passes; a law that has not settled by then is dropped.
 const MOST_PASSES: usize = 200;
 
-/// Reweightings after which the covariance is taken as it is, and the change at which it has settled.
+/// Most reweightings, after which the covariance stays as it is; then the relative change at which it has
+/// settled.
 const MOST_REWEIGHTINGS: usize = 30;
 const REWEIGHTED: f64 = 1e-8;
 
@@ -36,7 +37,7 @@ impl Estimator for WeakSindyConfig {
     }
 }
 
-/// What every law of a path is regressed on.
+/// Regression problem shared by all laws of a path.
 struct Problem<'a> {
     scaled: &'a Scaled,
     functions: TestFunctions,
@@ -44,13 +45,13 @@ struct Problem<'a> {
     settle_tolerance: f64,
 }
 
-/// The constant, then the coefficients of the columns.
+/// Constant, then the coefficients of the columns.
 type Coefficients = DVector<f64>;
 
 impl Problem<'_> {
-    /// Raises the threshold until the constant alone is left.
+    /// Raises the threshold until only the constant is left.
     fn path(&self, mut columns: Vec<Column>, progress: &mut Progress<'_>) -> Path {
-        // The constant is an unknown too, and a scatter needs a degree of freedom, here and at the peaks.
+        // The constant is an unknown too, and the scatter needs a degree of freedom, here and at the peaks.
         let most = self.functions.len().saturating_sub(1).min(self.scaled.peaks().saturating_sub(3));
         columns.truncate(most);
         let mut sloped = Sloped::null(self.scaled);
@@ -62,7 +63,7 @@ impl Problem<'_> {
     }
 
     /// Reweights at the measured peaks, then regresses along the trajectory until it reproduces itself;
-    /// `latest` follows. Gives whether it does.
+    /// `latest` is updated. Returns `true` if it does.
     fn settle(
         &self,
         columns: &[Column],
@@ -76,11 +77,11 @@ impl Problem<'_> {
             return Ok(false);
         };
         *latest = self.law_along_peaks(&coefficients, columns);
-        // The constant needs no trajectory to be evaluated along.
+        // The constant has no terms to evaluate along a trajectory.
         if columns.is_empty() {
             return Ok(true);
         }
-        // Once more, for slopes without the peaks' scatter.
+        // A second integration gives slopes without the peaks' scatter.
         *latest = self.law_along(&coefficients, columns, latest);
         let (mut relaxation, mut last_change) = (1.0, f64::INFINITY);
         for _ in 0..MOST_PASSES {
@@ -119,8 +120,8 @@ impl Problem<'_> {
         Ok(false)
     }
 
-    /// Generalized least squares with the terms at the measured peaks, the covariance of its residuals
-    /// taken from the law of the regression before, until neither changes. `None` where a number
+    /// Fits by generalized least squares with the terms at the measured peaks. The covariance of the
+    /// residuals comes from the law of the previous regression, until neither changes. `None` if a number
     /// overflows.
     fn reweighted(
         &self,
@@ -155,19 +156,19 @@ impl Problem<'_> {
         Ok(before)
     }
 
-    /// The law with its function by one integration along the measured peaks, which have no derivative
-    /// that could be trusted.
+    /// Returns the law with its function by one integration along the measured peaks, which have no reliable
+    /// derivative.
     fn law_along_peaks(&self, coefficients: &Coefficients, columns: &[Column]) -> Sloped {
         self.integrated(coefficients, columns, &self.scaled.logs, None)
     }
 
-    /// The law with its function by one integration along another law's trajectory.
+    /// Returns the law with its function by one integration along another law's trajectory.
     fn law_along(&self, coefficients: &Coefficients, columns: &[Column], along: &Sloped) -> Sloped {
         self.integrated(coefficients, columns, &along.law.trajectory, Some(&along.slopes))
     }
 
-    /// x(0) + ∫law ds with the law evaluated along a function, x(0) such that the residuals at the peaks
-    /// have the mean zero: a weak form does not know x(0).
+    /// Returns x(0) + ∫law ds with the law evaluated along a function. x(0) is chosen so that the residuals
+    /// at the peaks have mean zero, since a weak form does not determine it.
     fn integrated(
         &self,
         coefficients: &Coefficients,
@@ -227,14 +228,15 @@ impl WeakSindyConfig {
     }
 }
 
-/// The law at the times asked about; before it has settled there is no error to state.
+/// Predicts by the law at the query times. If the law has not settled, no error is stated.
 fn predicted(problem: &Problem<'_>, law: &Law, has_settled: bool, query_times: &[f64]) -> Vec<Prediction> {
     let instruments = || problem.functions.instruments(law, problem.scaled);
     let asked = has_settled && !query_times.is_empty();
     predictions(law, problem.scaled, asked.then(instruments), query_times)
 }
 
-/// The scatter about the law, as the test functions carry it to a constant rate.
+/// Computes the standard error from the scatter about the law, by the test functions' information on a
+/// constant rate.
 fn uncertainty(problem: &Problem<'_>, law: &Law, decay_rate: f64) -> Option<Uncertainty> {
     let scaled = problem.scaled;
     let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)? as f64;

@@ -1,4 +1,4 @@
-//! The test functions and the integrals against them.
+//! Test functions and the integrals against them.
 
 use crate::sloped::Sloped;
 use crate::whitening::{Row, Whitening};
@@ -22,11 +22,11 @@ const GAUSS: [(f64, f64); 5] = [
 /// Reference: Bortz, Messenger, Dukic, Bulletin of Mathematical Biology 85 (2023) 110, section 2.2.
 const IDENTITY_SHARE: f64 = 1e-10;
 
-/// A test function is kept where those before it leave more than this share of its variance.
+/// Smallest share of its variance that the functions before it must leave for a test function to be kept.
 const INDEPENDENT: f64 = 1e-6;
 
-/// A function of time that vanishes outside the peaks `first` and `last` and at both:
-/// φ(s) = (1 − u²)^p, u from −1 at the one to 1 at the other.
+/// Function of time that vanishes at the peaks `first` and `last` and outside of them: φ(s) = (1 − u²)^p,
+/// with u from −1 at `first` to 1 at `last`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TestFunction {
     first: usize,
@@ -34,11 +34,11 @@ pub(crate) struct TestFunction {
     middle: f64,
     half_width: f64,
     exponent: i32,
-    /// Brings the measured side's row to length 1.
+    /// Factor that scales the measured side's row to length 1.
     scale: f64,
-    /// −∫φ′y ds as weights of y at the peaks, y straight between them.
+    /// −∫φ′y ds as weights of y at the peaks, with y linear between them.
     measured: Row,
-    /// ∫φθ ds as weights of θ at the peaks, θ straight between them.
+    /// ∫φθ ds as weights of θ at the peaks, with θ linear between them.
     weights: Row,
 }
 
@@ -59,7 +59,7 @@ impl TestFunction {
             let step = next - one;
             for (node, weight) in GAUSS {
                 let (value, _) = function.at(one + node * step);
-                // By parts: −∫φ′y = ∫φy′, and y′ is constant between two peaks.
+                // By parts, −∫φ′y = ∫φy′, and y′ is constant between two peaks.
                 function.measured.add(at, -weight * value);
                 function.measured.add(at + 1, weight * value);
                 function.weights.add(at, weight * value * step * (1.0 - node));
@@ -75,7 +75,7 @@ impl TestFunction {
         })
     }
 
-    /// φ and φ′ at a scaled time.
+    /// Returns φ and φ′ at a scaled time.
     fn at(&self, time: f64) -> (f64, f64) {
         let u = (time - self.middle) / self.half_width;
         let base = 1.0 - u * u;
@@ -85,35 +85,37 @@ impl TestFunction {
     }
 }
 
-/// First peaks of the test functions of a width, half a width apart, the last one at the record's end.
+/// Returns the first peaks of the test functions of a width: half a width apart, with the last function
+/// ending with the record.
 fn positions(steps: usize, width: usize) -> impl Iterator<Item = usize> {
     let last = steps.saturating_sub(width);
     (0..last).step_by((width / 2).max(1)).chain([last])
 }
 
-/// The test functions of a record, none of which the others span.
+/// Linearly independent test functions of a record.
 ///
-/// The narrowest are two steps between peaks wide where `most` allows that many, otherwise so wide that half
-/// of them do; then twice as wide, and so on to the whole record, until `most` are kept. The narrow ones come
-/// first because they are the least alike: a set that starts with the wide ones has combinations that nearly
-/// vanish at every peak but not between, which the whitening blows up.
+/// The narrowest are two steps between peaks wide if `most` allows all of that width; otherwise they are so
+/// wide that their number is at most half of `most`. Then the width doubles up to the whole record, until
+/// `most` functions are kept. The narrow ones come first because they are the least alike: a set that starts
+/// with the wide ones has combinations that nearly vanish at every peak but not between the peaks, and the
+/// whitening amplifies these.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TestFunctions {
     functions: Vec<TestFunction>,
-    /// Of the measured side, whose rows times the peaks' scatter are its scatter.
+    /// Whitening of the measured side, whose scatter is its rows times the scatter of the peaks.
     pub(crate) whitening: Whitening,
 }
 
 impl TestFunctions {
-    /// Test functions over scaled times.
+    /// Creates test functions over scaled times.
     pub(crate) fn over(scaled: &Scaled, most: usize, exponent: i32) -> Self {
         let steps = scaled.peaks() - 1;
-        // A constant added to ln A changes no integral: one direction less than there are peaks.
+        // A constant added to ln A changes no integral, so that there is one direction fewer than peaks.
         let most = most.min(steps);
         let mut functions: Vec<TestFunction> = Vec::new();
         let mut whitening = Whitening::default();
         let mut width = 2;
-        // Where not all fit, half of them leave room for the wider ones.
+        // If not all fit, only half of them are used, to leave room for the wider ones.
         if positions(steps, width).count() > most {
             while positions(steps, width).count() > most / 2 && width < steps {
                 width *= 2;
@@ -136,17 +138,17 @@ impl TestFunctions {
         Self { functions, whitening }
     }
 
-    /// Number of test functions.
+    /// Returns the number of test functions.
     pub(crate) fn len(&self) -> usize {
         self.functions.len()
     }
 
-    /// −∫φ′x ds of the measured peaks, one entry per function.
+    /// Returns −∫φ′x ds of the measured peaks, one entry per function.
     pub(crate) fn measured(&self, values: &[f64]) -> DVector<f64> {
         DVector::from_iterator(self.len(), self.functions.iter().map(|function| function.measured.of(values)))
     }
 
-    /// ∫φ·1 and ∫φθ ds of the columns at the measured peaks: one row per function.
+    /// Returns ∫φ·1 and ∫φθ ds of the columns at the measured peaks, one row per function.
     pub(crate) fn terms_at_peaks(&self, columns: &[Column], scaled: &Scaled) -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(self.len(), 1 + columns.len());
         let values = columns.iter().map(|column| {
@@ -162,9 +164,9 @@ impl TestFunctions {
         matrix
     }
 
-    /// Both sides along a law's trajectory, which is known between the peaks as well: −∫φ′x ds, the
-    /// trajectory's own integral exactly and only what the peaks differ by straight between them, and the
-    /// terms' integrals.
+    /// Returns both sides along a law's trajectory, which is also known between the peaks. The left side is
+    /// −∫φ′x ds: the trajectory's own integral is exact, and only the residuals at the peaks are taken as
+    /// linear between them. The right side is the terms' integrals.
     pub(crate) fn along(
         &self,
         law: &Sloped,
@@ -195,8 +197,8 @@ impl TestFunctions {
         (target, matrix)
     }
 
-    /// The whitening of b − Gc where the terms are taken at the measured peaks: the scatter enters both
-    /// sides, with −φ′ and with φ·∂(law)/∂x.
+    /// Returns the whitening of b − Gc for terms at the measured peaks: the scatter enters both sides, with
+    /// −φ′ and with φ·∂(law)/∂x.
     ///
     /// Reference: Bortz, Messenger, Dukic, Bulletin of Mathematical Biology 85 (2023) 110, section 2.2.
     pub(crate) fn whitening_at_peaks(&self, law: &Law, scaled: &Scaled) -> Option<Whitening> {
@@ -216,9 +218,10 @@ impl TestFunctions {
         Some(whitening)
     }
 
-    /// What the weighted regression along a law's trajectory asks of the residuals r at the peaks, Zᵀr = 0:
-    /// a column of ones for the initial value, and Z = MᵀC⁻¹G with the measured side's rows M, their
-    /// covariance C = MMᵀ and the terms' integrals G. Peaks by parameters.
+    /// Returns the instruments Z of the weighted regression along a law's trajectory, which requires Zᵀr = 0
+    /// of the residuals r at the peaks. A column of ones belongs to the initial value; the others are MᵀC⁻¹G
+    /// with the measured side's rows M, their covariance C = MMᵀ and the terms' integrals G. Peaks by
+    /// parameters.
     pub(crate) fn instruments(&self, law: &Law, scaled: &Scaled) -> DMatrix<f64> {
         let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
         let slopes =
@@ -237,14 +240,14 @@ impl TestFunctions {
         instruments
     }
 
-    /// The information on a constant law's rate, dx/ds: the squared length of its whitened column, per
-    /// variance of the scatter.
+    /// Returns the information on a constant law's rate, dx/ds: the squared length of its whitened column,
+    /// per variance of the scatter.
     pub(crate) fn information(&self, scaled: &Scaled) -> f64 {
         self.whitening.apply(&self.measured(&scaled.times)).norm_squared()
     }
 }
 
-/// A trajectory at the quadrature's nodes.
+/// Trajectory at the quadrature's nodes.
 struct Curve {
     nodes: Vec<Node>,
 }
@@ -258,7 +261,7 @@ struct Node {
 }
 
 impl Curve {
-    /// Cubic between the peaks, by the trajectory's slopes there.
+    /// Interpolates by a cubic between the peaks, with the trajectory's slopes there.
     fn of(law: &Sloped, columns: &[Column], scaled: &Scaled) -> Self {
         let peaks = || scaled.times.iter().zip(&law.law.trajectory).zip(&law.slopes);
         let nodes =
@@ -276,7 +279,7 @@ impl Curve {
         Self { nodes: nodes.collect() }
     }
 
-    /// The nodes between two peaks.
+    /// Returns the nodes between two peaks.
     fn between(&self, first: usize, last: usize) -> impl Iterator<Item = &Node> {
         self.nodes.iter().take(last * GAUSS.len()).skip(first * GAUSS.len())
     }
@@ -288,7 +291,7 @@ mod tests {
     use envelope::Envelope;
     use sparse::Term;
 
-    /// Uneven times.
+    /// Creates an envelope with uneven times.
     fn scaled(peaks: usize, log: impl Fn(f64) -> f64) -> Scaled {
         let times: Vec<f64> = (0..peaks).map(|i| i as f64 + 0.2 * (i as f64 * 1.7).sin()).collect();
         let logs = times.iter().map(|&time| log(time)).collect();
@@ -301,7 +304,7 @@ mod tests {
         for (exponent, area) in [(1, 4.0 / 3.0), (2, 16.0 / 15.0), (3, 32.0 / 35.0)] {
             let function = TestFunction::new(2, 7, exponent, &scaled.times).unwrap();
             let area = area * function.half_width * function.scale;
-            // ∫(1 − u²)^p du over −1..1 for p = 1, 2, 3.
+            // The integral ∫(1 − u²)^p du over −1..1 for p = 1, 2, 3.
             assert!((function.weights.of(&[1.0; 9]) / area - 1.0).abs() < 1e-13);
             // −∫φ′·1 = 0 and −∫φ′s = ∫φ.
             assert!(function.measured.of(&[1.0; 9]).abs() < 1e-14);
@@ -336,7 +339,7 @@ mod tests {
 
     #[test]
     fn along_an_exact_trajectory_both_sides_agree() {
-        // dx/ds = 2s is solved by s² + x(0), which the cubic between the peaks holds exactly.
+        // dx/ds = 2s is solved by s² + x(0), which the cubic between the peaks represents exactly.
         let scaled = scaled(20, |time| -(time * time));
         let column = Column::over(Term::Time, &scaled).unwrap();
         let factor = 2.0 / column.derivative(0.0, 0.0);
@@ -345,7 +348,7 @@ mod tests {
         let slopes = scaled.times.iter().map(|s| 2.0 * s).collect();
         let law = Sloped::new(constant, vec![(column, factor)], trajectory.clone(), slopes, &scaled);
         let functions = TestFunctions::over(&scaled, 200, 2);
-        // Peaks that lie on the trajectory leave its own integral alone.
+        // Peaks that lie on the trajectory add nothing to its own integral.
         let on_it = Scaled { logs: trajectory, ..scaled };
         let (target, matrix) = functions.along(&law, &[column], &on_it);
         let difference = target - matrix * DVector::from_vec(vec![constant, factor]);

@@ -1,4 +1,4 @@
-//! Tests of whole fits: those that every method of laws has to pass, and this method's own.
+//! Tests of whole fits: those shared by all methods that discover laws, and those of this method.
 
 #[path = "../../../sparse/testing/laws.rs"]
 mod laws;
@@ -7,14 +7,14 @@ use estimator::{Cancel, FitContext, Reached, Silent};
 use laws::{damped, estimator, line};
 use seed::Seed;
 
-/// What is left is the quadrature between the peaks.
+/// The remaining difference is the error of the quadrature between the peaks.
 const AGREEMENT: f64 = 1e-7;
 
-/// Another law may be chosen then, with a quadrature error of its own.
+/// Another law may be chosen here, with its own quadrature error.
 const ADDED: f64 = 1e-5;
 
-/// Test functions cannot tell peaks from each other that are crowded into 1e-9 of the record, and the quadrature
-/// is coarse where a law ends.
+/// Test functions cannot separate peaks that are crowded into 1e-9 of the record, and the quadrature is
+/// coarse where the motion of a law ends.
 fn odd_bar(at: usize, rate: f64) -> f64 {
     let bar = [9, 10].iter().position(|odd| *odd == at).map_or(1e-5, |odd| [0.1, 0.01][odd]);
     bar * rate.abs().max(1e-9)

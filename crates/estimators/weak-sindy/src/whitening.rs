@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A row of numbers that vanishes outside a range.
+/// Row of numbers that vanishes outside a range.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     first: usize,
@@ -10,24 +10,24 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Zeros in the range that starts at `first`.
+    /// Creates zeros in the range that starts at `first`.
     pub(crate) fn zeros(first: usize, length: usize) -> Self {
         Self { first, values: vec![0.0; length] }
     }
 
-    /// Adds to the entry at a place within the range; elsewhere nothing.
+    /// Adds to the entry at an index within the range; other indices are ignored.
     pub(crate) fn add(&mut self, at: usize, value: f64) {
         if let Some(entry) = at.checked_sub(self.first).and_then(|place| self.values.get_mut(place)) {
             *entry += value;
         }
     }
 
-    /// Multiplies every entry.
+    /// Multiplies every entry by a factor.
     pub(crate) fn scale(&mut self, factor: f64) {
         self.values.iter_mut().for_each(|value| *value *= factor);
     }
 
-    /// The inner product with a full row.
+    /// Returns the inner product with a full row.
     pub(crate) fn of(&self, full: &[f64]) -> f64 {
         self.values.iter().zip(full.iter().skip(self.first)).map(|(one, other)| one * other).sum()
     }
@@ -38,14 +38,15 @@ impl Row {
         pairs.for_each(|(entry, value)| *entry += factor * value);
     }
 
-    /// The inner product with another row.
+    /// Returns the inner product with another row.
     pub(crate) fn dot(&self, other: &Self) -> f64 {
         let from = self.first.max(other.first);
         let own = self.values.iter().skip(from - self.first);
         own.zip(other.values.iter().skip(from - other.first)).map(|(one, other)| one * other).sum()
     }
 
-    /// This row minus another of the same range, times a full row entry by entry.
+    /// Returns this row minus another of the same range, the latter multiplied entry by entry with a full
+    /// row.
     pub(crate) fn minus_weighted(&self, other: &Self, full: &[f64]) -> Self {
         let weighted =
             other.values.iter().zip(full.iter().skip(self.first)).map(|(one, factor)| one * factor);
@@ -54,16 +55,16 @@ impl Row {
     }
 }
 
-/// The Cholesky factor of a covariance, grown row by row: L with LLᵀ the covariance, so that L⁻¹r has
-/// independent entries of equal variance where r has this covariance.
+/// Cholesky factor of a covariance, grown row by row: L with LLᵀ the covariance. L⁻¹r has independent entries
+/// of equal variance if r has this covariance.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Whitening {
     rows: Vec<Vec<f64>>,
 }
 
 impl Whitening {
-    /// Takes in one more entry, by its covariances with those before it and its own variance; `false`,
-    /// and nothing taken in, where those before it leave no more than a share `least` of its variance.
+    /// Adds one more entry, by its covariances with the entries before it and its own variance. Returns
+    /// `false` and adds nothing if the entries before it leave no more than a share `least` of its variance.
     pub(crate) fn extend(&mut self, covariances: &[f64], variance: f64, least: f64) -> bool {
         let mut row = self.forward(covariances.iter().copied());
         let left = variance - row.iter().map(|entry| entry * entry).sum::<f64>();
@@ -75,7 +76,7 @@ impl Whitening {
         independent
     }
 
-    /// L⁻¹ times a vector.
+    /// Returns L⁻¹ times a vector.
     fn forward(&self, vector: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut solution: Vec<f64> = Vec::with_capacity(self.rows.len());
         for (row, entry) in self.rows.iter().zip(vector) {
@@ -85,7 +86,7 @@ impl Whitening {
         solution
     }
 
-    /// L⁻ᵀ times a vector.
+    /// Returns L⁻ᵀ times a vector.
     fn backward(&self, mut rest: Vec<f64>) -> Vec<f64> {
         for (at, row) in self.rows.iter().enumerate().rev() {
             let Some((diagonal, before)) = row.split_last() else { continue };
@@ -98,18 +99,18 @@ impl Whitening {
         rest
     }
 
-    /// L⁻¹ times a vector.
+    /// Returns L⁻¹ times a vector.
     pub(crate) fn apply(&self, vector: &DVector<f64>) -> DVector<f64> {
         DVector::from_vec(self.forward(vector.iter().copied()))
     }
 
-    /// L⁻ᵀ times a matrix: after [`apply_all`](Self::apply_all), the covariance's inverse.
+    /// Returns L⁻ᵀ times a matrix: after [`apply_all`](Self::apply_all) this is the covariance's inverse.
     pub(crate) fn unapply_all(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         let entries = matrix.column_iter().flat_map(|column| self.backward(column.iter().copied().collect()));
         DMatrix::from_iterator(self.rows.len(), matrix.ncols(), entries)
     }
 
-    /// L⁻¹ times a matrix.
+    /// Returns L⁻¹ times a matrix.
     pub(crate) fn apply_all(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         let entries = matrix.column_iter().flat_map(|column| self.forward(column.iter().copied()));
         DMatrix::from_iterator(self.rows.len(), matrix.ncols(), entries)

@@ -1,27 +1,27 @@
-//! The axes of a sweep and their combinations.
+//! Axes of a sweep and their combinations.
 
 use super::{MOST_RUNS, SweepError};
 
-/// A key and the values that a sweep gives it, in the order written.
+/// A key and the values that a sweep gives it, in the order of the argument.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
-    /// The dotted key.
+    /// Dotted key.
     pub key: String,
-    /// The values as an override takes them: TOML, or plain text.
+    /// Values as an override takes them: TOML or plain text.
     pub values: Vec<String>,
 }
 
 impl Axis {
-    /// Reads `KEY=V1,V2` and `KEY=A..B`.
+    /// Parses `KEY=V1,V2` and `KEY=A..B`.
     ///
-    /// Commas separate values, but not inside brackets, braces or quotes: `estimator.hidden=[64],[32,32]` has two.
-    /// `A..B` stands for every whole number from A to B, *both included*; it may stand among other values, as in
-    /// `seed=0..4,10`.
+    /// Commas separate values, but not inside brackets, braces or quotes: `estimator.hidden=[64],[32,32]` has
+    /// two values. `A..B` stands for every whole number from A to B, *both included*. A range may stand among
+    /// other values, as in `seed=0..4,10`.
     ///
     /// # Errors
     /// [`SweepError::NoAxis`] without a `=`; [`SweepError::EmptyValue`], [`SweepError::Unclosed`] and
-    /// [`SweepError::BadRange`] where the values cannot be read; [`SweepError::TooManyRuns`] where a range is longer
-    /// than a sweep may be.
+    /// [`SweepError::BadRange`] if the values cannot be read; [`SweepError::TooManyRuns`] if a range is
+    /// longer than a sweep may be.
     pub fn parse(argument: &str) -> Result<Self, SweepError> {
         let no_axis = || SweepError::NoAxis { argument: argument.to_owned() };
         let (key, text) = argument.split_once('=').ok_or_else(no_axis)?;
@@ -54,12 +54,13 @@ impl Axis {
     }
 }
 
-/// Every combination of the axes' values, one override for each axis: the first axis varies slowest.
+/// Returns every combination of the axes' values, as one override per axis. The first axis varies slowest.
 ///
-/// Without an axis there is one combination, with nothing overridden.
+/// Without axes there is one combination, which overrides nothing.
 ///
 /// # Errors
-/// [`SweepError::RepeatedKey`] where two axes have one key; [`SweepError::TooManyRuns`] beyond [`MOST_RUNS`].
+/// [`SweepError::RepeatedKey`] if two axes have the same key; [`SweepError::TooManyRuns`] beyond
+/// [`MOST_RUNS`].
 pub fn combinations(axes: &[Axis]) -> Result<Vec<Vec<String>>, SweepError> {
     for (at, axis) in axes.iter().enumerate() {
         if axes.iter().take(at).any(|other| other.key == axis.key) {
@@ -81,7 +82,7 @@ pub fn combinations(axes: &[Axis]) -> Result<Vec<Vec<String>>, SweepError> {
     Ok(all)
 }
 
-/// The parts between commas that stand outside brackets, braces and quotes; `None` where one of these is not closed.
+/// Splits a text at the commas outside brackets, braces and quotes; `None` if one of these is not closed.
 fn split(text: &str) -> Option<Vec<String>> {
     let mut parts = vec![String::new()];
     let mut closing: Vec<char> = Vec::new();
@@ -90,7 +91,7 @@ fn split(text: &str) -> Option<Vec<String>> {
     for letter in text.chars() {
         match (quote, letter) {
             (Some(_), _) if is_escaped => is_escaped = false,
-            // TOML's single quotes know no escapes.
+            // TOML's single-quoted strings have no escapes.
             (Some('"'), '\\') => is_escaped = true,
             (Some(mark), _) if mark == letter => quote = None,
             (Some(_), _) => (),
@@ -113,7 +114,7 @@ fn split(text: &str) -> Option<Vec<String>> {
     (closing.is_empty() && quote.is_none()).then_some(parts)
 }
 
-/// The ends of `A..B`; `None` for what is no range, as the path `../log.csv`.
+/// Returns the endpoints of `A..B`; `None` for text that is no range, such as the path `../log.csv`.
 fn range(text: &str) -> Result<Option<(i64, i64)>, &'static str> {
     let Some((first, last)) = text.split_once("..") else { return Ok(None) };
     let (first, last) = (first.trim(), last.trim());
@@ -156,7 +157,7 @@ mod tests {
     fn a_range_holds_both_its_ends() {
         assert_eq!(values("seed=0..3"), ["0", "1", "2", "3"]);
         assert_eq!(values("seed=-1..1,7,9..9"), ["-1", "0", "1", "7", "9"]);
-        // Two dots in a path are no range.
+        // Two dots in a path do not make a range.
         assert_eq!(values("data.path=../log.csv,a..b,1.5..b"), ["../log.csv", "a..b", "1.5..b"]);
     }
 

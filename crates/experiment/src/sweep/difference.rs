@@ -1,9 +1,9 @@
-//! What differs between configurations.
+//! Differences between configurations.
 
 use settings::{Document, Leaf};
 use std::collections::BTreeMap;
 
-/// The first value in which two configurations differ, in words; `None` where they hold the same values.
+/// Returns the first value in which two configurations differ, in words; `None` if all values are equal.
 #[must_use]
 pub fn first_difference(then: &Document, now: &Document) -> Option<String> {
     let says = |leaf: &Leaf| format!("`{} = {}`", leaf.key, leaf.value);
@@ -18,10 +18,10 @@ pub fn first_difference(then: &Document, now: &Document) -> Option<String> {
     Some(format!("nothing then, {} now", says(added)))
 }
 
-/// The keys in which configurations differ, in the order in which they are met.
+/// Returns the keys in which configurations differ, in the order of their first occurrence.
 ///
-/// The settings of an estimator are compared among configurations of that estimator: that another one has no such
-/// key is no difference. `estimator.name` is left out; it is a column of every table.
+/// Settings of an estimator are compared only among configurations of that estimator: a key that another
+/// estimator lacks is no difference. `estimator.name` is left out, because every table has a column for it.
 #[must_use]
 pub fn differing_keys(configurations: &[&Document]) -> Vec<String> {
     let mut keys: Vec<&str> = Vec::new();
@@ -31,7 +31,7 @@ pub fn differing_keys(configurations: &[&Document]) -> Vec<String> {
         }
     }
     let differs = |key: &&str| {
-        // The first value of each estimator, or of all of them together.
+        // The first value found for each estimator, or for all configurations if the key belongs to none.
         let mut first: BTreeMap<Option<&str>, Option<&toml::Value>> = BTreeMap::new();
         configurations.iter().any(|document| {
             let own = key.starts_with("estimator.").then(|| value(document, "estimator.name")?.as_str());

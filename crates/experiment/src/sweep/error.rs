@@ -1,10 +1,10 @@
-//! What can be wrong with a sweep before its first run.
+//! Errors in a sweep that are found before its first run.
 
 use super::MOST_RUNS;
 use settings::SettingsError;
 use thiserror::Error;
 
-/// Why a sweep cannot be planned.
+/// Reason why a sweep cannot be planned.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
     /// An argument without a key or without a `=`.
@@ -19,7 +19,7 @@ pub enum SweepError {
         /// The argument as given.
         argument: String,
     },
-    /// A bracket, brace or quote without its other half.
+    /// A bracket, brace or quote that is not closed.
     #[error(
         "command line: `{argument}`: a bracket or quote is not closed; values with commas need both, as [32,32]"
     )]
@@ -27,17 +27,17 @@ pub enum SweepError {
         /// The argument as given.
         argument: String,
     },
-    /// A range of something else than whole numbers, or an empty one.
+    /// A range that is empty or whose endpoints are not whole numbers.
     #[error("command line: `{argument}`: `{range}`: {problem}")]
     BadRange {
         /// The argument as given.
         argument: String,
-        /// The range in it.
+        /// The range within the argument.
         range: String,
-        /// What is wrong with it, and what to do.
+        /// Fault of the range and its remedy.
         problem: &'static str,
     },
-    /// Two axes with one key.
+    /// Two axes with the same key.
     #[error("command line: `{key}` is given twice; give all its values at once, as {key}=V1,V2")]
     RepeatedKey {
         /// The key.
@@ -46,55 +46,55 @@ pub enum SweepError {
     /// More combinations than a sweep may have.
     #[error("the axes make {runs} runs, and a sweep has {MOST_RUNS} at most; split it into several sweeps")]
     TooManyRuns {
-        /// How many there would be.
+        /// Number of runs that the axes would make.
         runs: u128,
     },
-    /// A search that asks for more points than there are.
+    /// A search that asks for more points than its space has.
     #[error(
         "what is searched has only about {points} different points; ask for fewer with --trials, or widen a range"
     )]
     UsedUp {
-        /// Points that were found.
+        /// Number of points found.
         points: usize,
     },
-    /// A combination that no run can be made of.
+    /// A combination that does not resolve to a valid configuration.
     #[error("combination {number} ({overrides}): {source}")]
     BadCombination {
-        /// Its number, from 1.
+        /// Number of the combination, from 1.
         number: usize,
-        /// Its overrides.
+        /// Overrides of the combination.
         overrides: String,
-        /// What is wrong.
+        /// Error of the configuration.
         source: SettingsError,
     },
-    /// A combination whose task makes no single table row.
+    /// A combination whose task does not give a single table row.
     #[error(
         "combination {number} ({overrides}): task = \"{task}\" cannot be swept; a sweep is over \"estimate\", \"compare\" or \"learn\""
     )]
     Task {
-        /// Its number, from 1.
+        /// Number of the combination, from 1.
         number: usize,
-        /// Its overrides.
+        /// Overrides of the combination.
         overrides: String,
         /// The task.
         task: String,
     },
-    /// Two combinations with the same values in force.
+    /// Two combinations with equal values in force.
     #[error(
         "combinations {first} ({overrides}) and {second} are the same experiment, every value equal; write each value once"
     )]
     Repeated {
-        /// Number of the first, from 1.
+        /// Number of the first combination, from 1.
         first: usize,
-        /// Its overrides.
+        /// Overrides of the first combination.
         overrides: String,
-        /// Number of the second.
+        /// Number of the second combination, from 1.
         second: usize,
     },
-    /// A share that is none.
+    /// A share that is not of the form `I/N`.
     #[error("--shard {found}: expected I/N with I from 1 to N, N up to 10000, for example 2/8")]
     BadShard {
-        /// As given.
+        /// The text as given.
         found: String,
     },
 }

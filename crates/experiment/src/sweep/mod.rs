@@ -1,4 +1,5 @@
-//! Sweeps: an experiment over every combination of some keys' values, resolved and checked before the first runs.
+//! Sweeps: an experiment over every combination of the values of some keys. All combinations are resolved and
+//! checked before the first one runs.
 
 mod axis;
 mod difference;
@@ -20,21 +21,21 @@ use settings::{Document, Resolved, SettingsError};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
-/// Most runs of one sweep.
+/// Largest number of runs in one sweep.
 pub const MOST_RUNS: usize = 10_000;
 
-/// What there is to choose from.
+/// Methods that a sweep's configurations may name.
 #[derive(Clone, Copy)]
 pub struct Registries<'a> {
-    /// The estimators.
+    /// Entries of the estimators.
     pub estimators: &'a [estimator::Entry],
     /// Ids of the classical methods.
     pub classical: &'a [&'a str],
-    /// The learners of dynamics.
+    /// Entries of the learners of dynamics.
     pub learners: &'a [learn::Entry],
 }
 
-/// An experiment that a sweep may make.
+/// Experiment of one combination.
 pub enum Swept {
     /// An estimate or a comparison.
     Experiment(Box<Experiment>),
@@ -43,10 +44,10 @@ pub enum Swept {
 }
 
 impl Swept {
-    /// Resolves a document; the error holds the task where a sweep cannot be over it.
+    /// Resolves a document; the inner error holds the name of a task that cannot be swept.
     ///
     /// # Errors
-    /// As [`resolve`] and [`resolve_learning`].
+    /// The errors of [`resolve`] and [`resolve_learning`].
     pub fn resolve(
         document: &Document,
         registries: &Registries<'_>,
@@ -63,7 +64,7 @@ impl Swept {
         }))
     }
 
-    /// Every value in force.
+    /// Returns all configuration values in force.
     #[must_use]
     pub fn resolved(&self) -> &Resolved {
         match self {
@@ -72,7 +73,7 @@ impl Swept {
         }
     }
 
-    /// What it is asked for.
+    /// Returns the task of the experiment.
     #[must_use]
     pub fn task(&self) -> SweptTask {
         match self {
@@ -84,7 +85,7 @@ impl Swept {
         }
     }
 
-    /// SHA-256 of every value in force, `sha256:` and 64 hexadecimal digits.
+    /// Returns the SHA-256 of all values in force: `sha256:` and 64 hexadecimal digits.
     #[must_use]
     pub fn digest(&self) -> String {
         let hash = Sha256::digest(self.resolved().values_text().as_bytes());
@@ -92,7 +93,7 @@ impl Swept {
     }
 }
 
-/// What a run is asked for.
+/// Task of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SweptTask {
     /// One method on one record.
@@ -103,36 +104,38 @@ pub enum SweptTask {
     Learn,
 }
 
-/// What a run reads.
+/// Data that a run reads.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunData {
-    /// One record.
+    /// One record, by its path.
     Record(String),
     /// Data sets.
     Problems(Vec<LearningProblem>),
 }
 
-/// One run of a sweep, frozen.
+/// One run of a sweep, with its configuration frozen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedRun {
-    /// Position in the list, from 1.
+    /// Position in the list of runs, from 1.
     pub number: usize,
-    /// SHA-256 of every value in force ([`settings::Resolved::values_text`]): `sha256:` and 64 hexadecimal digits.
+    /// SHA-256 of all values in force ([`settings::Resolved::values_text`]): `sha256:` and 64 hexadecimal
+    /// digits.
     pub digest: String,
-    /// What the combination overrides, an argument for each axis.
+    /// Overrides of the combination, one argument per axis.
     pub overrides: Vec<String>,
-    /// The resolved configuration, as a run's `config.toml` has it.
+    /// Resolved configuration, as in the run's `config.toml`.
     pub config: String,
-    /// What it is asked for.
+    /// Task of the run.
     pub task: SweptTask,
-    /// What it reads.
+    /// Data that the run reads.
     pub data: RunData,
 }
 
-/// Resolves and checks combinations on top of a configuration; they are numbered from `first`.
+/// Applies each combination to a configuration, then resolves and checks it. Runs are numbered from `first`.
 ///
 /// # Errors
-/// The first combination that cannot be run, with its number and its overrides; two that are the same experiment.
+/// [`SweepError::BadCombination`] or [`SweepError::Task`] for the first combination that cannot be run, with
+/// its number and overrides; [`SweepError::Repeated`] if two combinations are the same experiment.
 pub fn plan(
     document: &Document,
     combinations: Vec<Vec<String>>,
@@ -164,18 +167,18 @@ pub fn plan(
 
 /// Applies one `key=value` argument to a configuration.
 ///
-/// `estimator=NAME` chooses the estimator: the file's settings of another one are left out, those of this one and
-/// overrides stay. Everything else is [`Document::apply_override`].
+/// `estimator=NAME` chooses the estimator. If the choice changes, the file's settings below `estimator` are
+/// dropped; overrides stay. Every other argument goes to [`Document::apply_override`].
 ///
 /// # Errors
-/// As [`Document::apply_override`].
+/// The errors of [`Document::apply_override`].
 pub fn apply_override(document: &mut Document, argument: &str) -> Result<(), SettingsError> {
     let Some(("estimator", name)) = argument.split_once('=').map(|(key, value)| (key.trim(), value.trim()))
     else {
         return document.apply_override(argument);
     };
     let choice = format!("estimator.name={name}");
-    // However the name is quoted, it is the value that chooses.
+    // Names are compared as parsed values, so quoting does not matter.
     let mut chosen = document.clone();
     chosen.apply_override(&choice)?;
     let name_in = |document: &Document| document.get("estimator.name").map(|leaf| leaf.value.clone());
@@ -192,7 +195,8 @@ enum Fault {
 
 fn one(document: &Document, overrides: &[String], registries: &Registries<'_>) -> Result<Swept, Fault> {
     let mut document = document.clone();
-    // The estimator first: choosing it leaves the settings of another one out, whatever the order of the axes.
+    // The estimator goes first, because choosing it drops the settings of another one. The order of the axes
+    // then does not matter.
     let (choices, others): (Vec<&String>, Vec<&String>) =
         overrides.iter().partition(|argument| argument.starts_with("estimator="));
     for argument in choices.into_iter().chain(others) {

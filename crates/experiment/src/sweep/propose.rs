@@ -1,7 +1,7 @@
-//! Where a search tries next: random points, or points of a tree-structured Parzen estimator.
+//! Proposal of a search's next points: at random, or by a tree-structured Parzen estimator.
 //!
-//! Bergstra, Bardenet, Bengio, Kégl, Algorithms for Hyper-Parameter Optimization, NeurIPS 24 (2011) 2546, each key by
-//! itself. Numbers are drawn in the unit interval of their scale.
+//! Bergstra, Bardenet, Bengio, Kégl, Algorithms for Hyper-Parameter Optimization, NeurIPS 24 (2011) 2546,
+//! applied to each key separately. Numbers are drawn in the unit interval of their scale.
 
 use super::{Dimension, Domain, SweepError};
 use rand::{Rng, RngExt};
@@ -9,38 +9,38 @@ use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 use serde::{Deserialize, Serialize};
 
-/// How a search chooses its points.
+/// Method for choosing the next points of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampler {
-    /// Independent draws, all known before the first run.
+    /// Independent random draws; all are known before the first run.
     Random,
-    /// Draws from where the best results so far lie, by tree-structured Parzen estimators.
+    /// Draws near the best results so far, by tree-structured Parzen estimators.
     Tpe,
 }
 
-/// A point that was tried: an override for each dimension, and what it cost.
+/// A point already tried and its cost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriedPoint {
-    /// An override for each dimension, in their order.
+    /// Overrides of the point, one per dimension, in the order of the dimensions.
     pub overrides: Vec<String>,
-    /// What is minimized; `None` where the run failed, which counts as worse than anything.
+    /// Cost to minimize; `None` if the run failed, which ranks below every other cost.
     pub cost: Option<f64>,
 }
 
-/// Points that [`Sampler::Tpe`] draws at random before it has anything to go by.
+/// Number of points that [`Sampler::Tpe`] draws at random before it uses results.
 pub const STARTING_POINTS: usize = 10;
 
-/// Draws after which a space counts as used up.
+/// Number of failed draws after which a space counts as exhausted.
 const MOST_DRAWS: usize = 1_000;
 
-/// The next `count` points of a search, none of them tried before.
+/// Proposes the next `count` points of a search; none has been tried before.
 ///
-/// Point number k depends on the seed, on k, and on `tried` alone. Points of one call know of each other only that they
-/// are taken, as if each were the worst so far ("constant liar"), so that they may run side by side.
+/// Point number k depends only on the seed, on k and on `tried`. The points of one call can run in parallel:
+/// each treats the others as tried with the worst cost ("constant liar").
 ///
 /// # Errors
-/// [`SweepError::UsedUp`] where the space has no more points.
+/// [`SweepError::UsedUp`] if the space has no more points.
 pub fn propose(
     dimensions: &[Dimension],
     sampler: Sampler,
@@ -58,7 +58,7 @@ pub fn propose(
         };
         let is_new = |point: &Vec<String>| known.iter().all(|other| other.overrides != *point);
         let mut draw = |attempt: usize| -> Vec<String> {
-            // Where estimators insist on what was tried, chance decides.
+            // If the estimators keep proposing tried points, the second half of the draws is random.
             let guided = is_guided && attempt < MOST_DRAWS / 2;
             let places = dimensions.iter().enumerate();
             places
@@ -75,29 +75,30 @@ pub fn propose(
     Ok(known.into_iter().skip(tried.len()).map(|point| point.overrides).collect())
 }
 
-/// Share of the points that count as good.
+/// Share of the tried points that count as good.
 const GOOD: f64 = 0.1;
 
-/// Places drawn where the good points lie, of which the one is taken where they are densest against the others.
+/// Number of candidates drawn from the density of the good points; the one with the largest density ratio of
+/// good to other points is chosen.
 const CANDIDATES: usize = 24;
 
-/// Where the good and the other points of one dimension lie.
+/// Densities of the good points and of the others, along one dimension.
 struct Estimator {
     good: Density,
     others: Density,
 }
 
 impl Estimator {
-    /// A place in the unit interval.
+    /// Draws a place in the unit interval.
     fn place<R: Rng>(&self, generator: &mut R) -> f64 {
         let candidates = (0..CANDIDATES).map(|_| self.good.draw(generator));
         let rated = candidates.map(|place| (self.good.log(place) - self.others.log(place), place));
-        // Without candidates, which there are, the middle.
+        // The middle for an empty list, which cannot occur.
         rated.max_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.5, |(_, place)| place)
     }
 }
 
-/// One estimator for each dimension.
+/// Returns one estimator per dimension.
 fn estimators(dimensions: &[Dimension], tried: &[TriedPoint]) -> Vec<Estimator> {
     let cost = |point: &&TriedPoint| point.cost.filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
     let mut order: Vec<&TriedPoint> = tried.iter().collect();
@@ -113,16 +114,17 @@ fn estimators(dimensions: &[Dimension], tried: &[TriedPoint]) -> Vec<Estimator> 
     dimensions.iter().enumerate().map(make).collect()
 }
 
-/// A density over the unit interval, up to a factor.
+/// Unnormalized density over the unit interval.
 enum Density {
-    /// Normal kernels of a number: centers and widths.
+    /// Normal kernels of a numeric dimension, as (center, width).
     Kernels(Vec<(f64, f64)>),
-    /// Weights of choices.
+    /// Weights of the choices.
     Weights(Vec<f64>),
 }
 
 impl Density {
-    /// Of places; with a wide kernel in the middle, and a count of one for each choice, as what is known before.
+    /// Estimates the density of places. The prior is a wide kernel in the middle for numbers, and a count of
+    /// one for each choice.
     fn of(domain: &Domain, mut places: Vec<f64>) -> Self {
         if let Domain::Choice(values) = domain {
             let mut weights = vec![1.0; values.len()];
@@ -139,7 +141,7 @@ impl Density {
         let (before, after) = (places.iter().copied(), places.iter().copied().skip(1));
         let (before, after) = (std::iter::once(0.0).chain(before), after.chain([1.0]));
         let widths = before.zip(after).zip(&places);
-        // As wide as the way to the farther neighbor.
+        // A kernel is as wide as the distance to the farther neighbor.
         let width = |((before, after), place): ((f64, f64), &f64)| (place - before).max(after - place);
         Self::Kernels(widths.map(|own| (*own.1, width(own).clamp(least, 1.0))).collect())
     }
@@ -150,11 +152,11 @@ impl Density {
                 let mut draw = || {
                     let number = generator.random_range(0..kernels.len());
                     let standard: f64 = StandardNormal.sample(generator);
-                    // Never without kernels; the middle is where nothing is known.
+                    // There is always a kernel; the middle would be the uninformed answer.
                     kernels.get(number).map_or(0.5, |(center, width)| center + width * standard)
                 };
                 let drawn = std::iter::repeat_with(&mut draw).take(MOST_DRAWS);
-                // The middle, after draws that all fell outside: a kernel far beyond an end.
+                // The middle if every draw fell outside, as with a kernel far beyond an endpoint.
                 drawn.into_iter().find(|place| (0.0..1.0).contains(place)).unwrap_or(0.5)
             }
             Self::Weights(weights) => {
@@ -177,7 +179,7 @@ impl Density {
                 (kernels.iter().map(kernel).sum::<f64>() / kernels.len() as f64).ln()
             }
             Self::Weights(weights) => {
-                // A place behind the last weight has none.
+                // A place beyond the last choice has no weight.
                 let weight = weights.get((place * weights.len() as f64) as usize).copied().unwrap_or(0.0);
                 (weight / weights.iter().sum::<f64>()).ln()
             }
@@ -198,7 +200,7 @@ mod tests {
         text.split_once('=').unwrap().1.parse().unwrap()
     }
 
-    /// The least cost that a search finds in so many trials, in batches.
+    /// Returns the smallest cost that a search finds in a number of trials, run in batches.
     fn least(sampler: Sampler, seed: u64, trials: usize) -> f64 {
         let space = space(&["x={from=1e-4,to=1.0,scale='log'}", "y=-5.0..5.0", "z=a,b,c,d"]);
         let cost = |point: &[String]| {

@@ -5,10 +5,10 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use std::str::FromStr;
 
-/// Most shares of one piece of work.
+/// Largest number of shares.
 const MOST_SHARDS: usize = 10_000;
 
-/// The `index`-th of `of` shares.
+/// Share number `index` of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -16,18 +16,22 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All there is: the one share of one.
+    /// The whole work: share 1 of 1.
     pub const ALL: Self = Self { index: 1, of: 1 };
 
-    /// Whether the run at a position of the frozen list, from 0, belongs to this share. Every run belongs to exactly
-    /// one; neighbors belong to different ones, so that each share gets some of every part of the list.
+    /// Returns `true` if the run at `position` in the frozen list, from 0, belongs to this share.
+    ///
+    /// Every run belongs to exactly one share. Neighboring runs belong to different shares, so that each
+    /// share covers every part of the list.
     #[must_use]
     pub fn takes(self, position: usize) -> bool {
         position % self.of == self.index - 1
     }
 
-    /// Whether the case of a name belongs to this share, by the SHA-256 of the name. Every case belongs to exactly one,
-    /// and stays in it whatever other cases come or go while shares wait in a queue.
+    /// Returns `true` if the case called `name` belongs to this share, by the SHA-256 of the name.
+    ///
+    /// Every case belongs to exactly one share and stays in it even if other cases are added or removed while
+    /// shares wait in a queue.
     #[must_use]
     pub fn takes_named(self, name: &str) -> bool {
         let digest = Sha256::digest(name.as_bytes());
@@ -39,10 +43,10 @@ impl Shard {
 impl FromStr for Shard {
     type Err = SweepError;
 
-    /// Reads `I/N` with I from 1 to N.
+    /// Parses `I/N` with I from 1 to N.
     ///
     /// # Errors
-    /// [`SweepError::BadShard`] for everything else, and beyond ten thousand shares.
+    /// [`SweepError::BadShard`] for any other text, and for N above ten thousand.
     fn from_str(text: &str) -> Result<Self, SweepError> {
         let ends = text.split_once('/').map(|(index, of)| (index.trim().parse(), of.trim().parse()));
         match ends {
@@ -74,7 +78,7 @@ mod tests {
         assert_eq!(shards[1].to_string(), "2/3");
     }
 
-    /// The shares of a name are part of what separate machines agree on, so that they stay the same over versions.
+    /// Separate machines have to agree on the share of a name, so it must not change between versions.
     #[test]
     fn a_case_stays_in_its_share_whatever_else_there_is() {
         let shards: Vec<Shard> = (1..=3).map(|index| format!("{index}/3").parse().unwrap()).collect();

@@ -1,28 +1,28 @@
-//! What a search draws from: a key with choices or with a range of numbers.
+//! Search space: keys with choices or with ranges of numbers.
 
 use super::{Axis, SweepError};
 use settings::Document;
 use toml::{Table, Value};
 
-/// A key that a search varies, and what it may be.
+/// A key that a search varies and its domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dimension {
-    /// The dotted key.
+    /// Dotted key.
     pub key: String,
-    /// What it may be.
+    /// Values that the key may take.
     pub domain: Domain,
 }
 
-/// What a key may be.
+/// Values that a key may take.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
-    /// One of some values, as overrides write them.
+    /// One of several values, as overrides write them.
     Choice(Vec<String>),
-    /// A number of a range.
+    /// A number within a range.
     Range(Range),
 }
 
-/// A range of numbers, both ends included.
+/// Range of numbers, both endpoints included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     from: f64,
@@ -31,22 +31,24 @@ pub struct Range {
     is_logarithmic: bool,
 }
 
-/// Digits of a drawn number, so that configurations stay readable.
+/// Significant digits of a drawn real number; few digits keep configurations readable.
 const DIGITS: usize = 5;
 
-/// Largest whole number of a range: doubles hold every one up to it.
+/// Largest magnitude of a whole-number endpoint: doubles represent every whole number up to it.
 const MOST_WHOLE: f64 = 9.0e15;
 
-/// How a range is written, for messages.
+/// Expected form of a range, for messages.
 const EXPECTED: &str = "from and to, from below to, and scale = \"linear\" or, with from above 0, \"log\"";
 
 impl Dimension {
-    /// Reads `KEY=V1,V2`, `KEY=A..B` and `KEY={from=A,to=B,scale="log"}`.
+    /// Parses `KEY=V1,V2`, `KEY=A..B` and `KEY={from=A,to=B,scale="log"}`.
     ///
-    /// Whole ends give whole numbers, others real ones; both ends are included. Choices are those of [`Axis::parse`].
+    /// A range with whole endpoints gives whole numbers, any other gives real numbers; both endpoints are
+    /// included. Choices are parsed as by [`Axis::parse`].
     ///
     /// # Errors
-    /// As [`Axis::parse`], and [`SweepError::BadRange`] where the ends or the scale make no range.
+    /// The errors of [`Axis::parse`], and [`SweepError::BadRange`] if the endpoints or the scale make no
+    /// range.
     pub fn parse(argument: &str) -> Result<Self, SweepError> {
         let no_axis = || SweepError::NoAxis { argument: argument.to_owned() };
         let (key, text) = argument.split_once('=').ok_or_else(no_axis)?;
@@ -71,10 +73,11 @@ impl Dimension {
         Ok(Self { key: axis.key, domain: Domain::Choice(axis.values) })
     }
 
-    /// Takes the ranges out of a study file: `KEY = { from = A, to = B, scale = "log" }` and `KEY = { choices = [V1, V2] }`.
+    /// Takes the ranges and choices out of a study file: `KEY = { from = A, to = B, scale = "log" }` and
+    /// `KEY = { choices = [V1, V2] }`.
     ///
     /// # Errors
-    /// [`SweepError::BadRange`] where what stands there makes no range.
+    /// [`SweepError::BadRange`] if a table makes no range.
     pub fn taken_from(document: &mut Document) -> Result<Vec<Self>, SweepError> {
         let mut keys: Vec<String> = Vec::new();
         for leaf in document.leaves() {
@@ -102,13 +105,13 @@ impl Dimension {
         Ok(found)
     }
 
-    /// The override that a place in the unit interval stands for.
+    /// Returns the override for a place in the unit interval.
     #[must_use]
     pub fn at(&self, place: f64) -> String {
         let value = match &self.domain {
             Domain::Choice(values) => {
                 let number = ((place * values.len() as f64) as usize).min(values.len().saturating_sub(1));
-                // A choice has values; an axis without any was refused where it was read.
+                // Every choice has values; an axis without values was refused when it was parsed.
                 values.get(number).cloned().unwrap_or_default()
             }
             Domain::Range(range) => range.text(place),
@@ -116,7 +119,8 @@ impl Dimension {
         format!("{}={value}", self.key)
     }
 
-    /// The place in the unit interval of an override's value; `None` for one that the domain does not hold.
+    /// Returns the place in the unit interval of an override's value; `None` if the domain does not contain
+    /// the value.
     #[must_use]
     pub fn place(&self, argument: &str) -> Option<f64> {
         let value = argument.strip_prefix(&self.key)?.strip_prefix('=')?;
@@ -129,7 +133,7 @@ impl Dimension {
         }
     }
 
-    /// Number of different values; `None` where they are beyond counting.
+    /// Returns the number of different values; `None` if the values cannot be counted.
     #[must_use]
     pub fn count(&self) -> Option<u128> {
         match &self.domain {
@@ -139,7 +143,8 @@ impl Dimension {
         }
     }
 
-    /// Values and scale as a manifest holds them: the choices without a scale, or the ends with one.
+    /// Returns values and scale as stored in a manifest: the choices without a scale, or the endpoints with
+    /// one.
     #[must_use]
     pub fn described(&self) -> (Vec<String>, Option<&'static str>) {
         match &self.domain {
@@ -151,7 +156,8 @@ impl Dimension {
         }
     }
 
-    /// The dimension that [`described`](Self::described) describes; `None` where it does not.
+    /// Returns the dimension that [`described`](Self::described) describes; `None` if the description is
+    /// invalid.
     #[must_use]
     pub fn from_described(key: &str, values: &[String], scale: Option<&str>) -> Option<Self> {
         let domain = match (scale, values) {
@@ -182,7 +188,7 @@ impl Domain {
 }
 
 impl Range {
-    /// Ends as they are written: whole where both are.
+    /// Parses the endpoints; the range is one of whole numbers if both are whole.
     fn of_text(from: &str, to: &str, is_logarithmic: bool) -> Option<Self> {
         let is_whole = from.parse::<i64>().is_ok() && to.parse::<i64>().is_ok();
         let (from, to): (f64, f64) = (from.parse().ok()?, to.parse().ok()?);
@@ -197,7 +203,8 @@ impl Range {
         })
     }
 
-    /// Ends of the scale that is drawn from evenly. Each whole number has a cell of its own.
+    /// Returns the endpoints on the scale on which draws are uniform. Each whole number has a cell of equal
+    /// width.
     fn ends(self) -> [f64; 2] {
         let half = if self.is_whole { 0.5 } else { 0.0 };
         [self.from - half, self.to + half].map(|end| if self.is_logarithmic { end.ln() } else { end })
@@ -222,7 +229,7 @@ impl Range {
         (0.0..=1.0).contains(&place).then_some(place)
     }
 
-    /// A real number keeps its point, so that it is read as one.
+    /// Formats a value; a real number keeps its decimal point, so that it is read back as one.
     fn written(self, value: f64) -> String {
         if self.is_whole { format!("{value:.0}") } else { format!("{value:?}") }
     }

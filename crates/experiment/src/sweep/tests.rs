@@ -27,7 +27,7 @@ fn every_combination_is_resolved() {
     for run in &runs {
         assert_eq!(run.data, RunData::Record("a.csv".to_owned()));
         assert_eq!(run.digest.len(), "sha256:".len() + 64);
-        // The frozen text alone gives the same run again.
+        // The frozen text alone resolves to the same run.
         let again = planned(&run.config, &[]).unwrap();
         assert_eq!(again[0].digest, run.digest);
     }
@@ -77,12 +77,12 @@ fn the_short_form_leaves_out_what_belongs_to_another_estimator() {
         keys(&["estimator.steps=1", "estimator=ols"]),
         ["estimator.steps=1", "estimator.name=\"ols\""]
     );
-    // In a sweep the order of the axes says nothing about it.
+    // In a sweep, the order of the axes does not matter.
     let both = ["estimator.hidden=[4]", "estimator=ols"];
     let message = refused(text, &both);
     assert!(message.contains("unknown key `estimator.hidden`"), "{message}");
     assert!(refused(text, &["estimator.name=ols"]).contains("estimator=ols instead of estimator.name=ols"));
-    // A key that belongs to no estimator is told as what it is.
+    // A key that belongs to no estimator is reported as plainly unknown.
     let other = refused("[fit]\nsteps = 3\n", &["estimator.name=ols"]);
     assert!(other.contains("unknown key `fit.steps`") && !other.contains("instead of"), "{other}");
 }

@@ -1,7 +1,8 @@
-//! A linear autoregression with input, run freely: what linear system identification makes of the records.
+//! Linear autoregression with exogenous input (ARX), run freely: the baseline of linear system
+//! identification.
 //!
-//! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of one step (Ljung, System Identification, 2nd ed. 1999, section 4.2).
-//! The order is that whose free run validates best.
+//! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of the one-step error (Ljung, System Identification, 2nd
+//! ed. 1999, section 4.2). The order is the one whose free run has the smallest validation error.
 
 use crate::data::DataSet;
 use crate::judge::validation_error;
@@ -9,39 +10,42 @@ use crate::linear::least_squares;
 use crate::{Ahead, LearnError, Model, Past, Predicted};
 use nalgebra::{DMatrix, DVector};
 
-/// A linear autoregression with input.
+/// Linear autoregression with exogenous input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arx {
-    /// Weight of each earlier position, the latest first.
+    /// Weight of each earlier position, latest first.
     positions: Vec<f64>,
-    /// Weight of each earlier input, the latest first; none without an input.
+    /// Weight of each earlier input, latest first; empty without an input.
     inputs: Vec<f64>,
     constant: f64,
     bound: f64,
 }
 
-/// Orders that are tried.
+/// Candidate orders.
 const ORDERS: [usize; 6] = [2, 4, 8, 16, 24, 32];
 
-/// Rows of a regression at most.
+/// Largest number of rows of a regression.
 const MOST_ROWS: usize = 8_000;
 
 impl Arx {
-    /// Fits every order that a warm-up has samples for, and keeps the one that validates best.
+    /// Fits every order that the warm-up has enough samples for, and keeps the one with the smallest
+    /// validation error.
     ///
     /// # Errors
-    /// [`LearnError::Unsolvable`] where no order can be fitted.
+    /// [`LearnError::Unsolvable`] if no order can be fitted.
     pub fn fit(data: &DataSet) -> Result<Self, LearnError> {
         Self::validated(data, &[0.0])
     }
 
-    /// The order and the ridge, a share of each regressor's mean square, whose free run validates best. A ridge keeps weights
-    /// of smooth inputs from canceling each other.
+    /// Fits every order with every ridge and keeps the pair whose free run has the smallest validation error.
+    ///
+    /// A ridge is a share of each regressor's mean square. It keeps the weights of a smooth input from
+    /// growing large and canceling each other.
     ///
     /// # Errors
     /// As [`Self::fit`].
     pub(crate) fn validated(data: &DataSet, ridges: &[f64]) -> Result<Self, LearnError> {
-        // Without a training part no order fits, which is refused below.
+        // Without a training part no order fits; this is refused below.
         let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min().unwrap_or(0);
         let orders = ORDERS.iter().filter(|order| **order < shortest.max(8));
         let fitted = orders
@@ -57,7 +61,7 @@ impl Arx {
 }
 
 impl Arx {
-    /// The same without a bound to what it predicts.
+    /// Returns the same model without a bound on its predictions.
     pub(crate) fn unbounded(self) -> Self {
         Self { bound: f64::INFINITY, ..self }
     }
@@ -72,7 +76,7 @@ fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
         for now in (order..part.len()).step_by(stride) {
             rows.extend(latest_first(part.values(), now, order));
             if driven {
-                // A driven set has an input in every part.
+                // In a driven set, every part has an input.
                 rows.extend(latest_first(part.input().unwrap_or_default(), now, order));
             }
             rows.push(1.0);
@@ -95,9 +99,9 @@ fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
     Some(Arx { positions: positions.to_vec(), inputs: inputs.to_vec(), constant: *constant, bound })
 }
 
-/// The `count` values before `now`, the latest first.
+/// Returns the `count` values before `now`, latest first.
 fn latest_first(values: &[f64], now: usize, count: usize) -> impl Iterator<Item = f64> + '_ {
-    // Callers ask from the `count`-th value on; of fewer there are none.
+    // Callers start at the `count`-th value; with fewer values there is nothing to return.
     values.get(now.saturating_sub(count)..now).unwrap_or_default().iter().rev().copied()
 }
 
@@ -107,16 +111,16 @@ impl Model for Arx {
         let known = past.values.len();
         if known < order {
             let spacing =
-                // Of no sample no time has passed.
+                // No samples span no time.
                 past.times_s.last().zip(past.times_s.first()).map_or(0.0, |(last, first)| last - first)
                     / known.saturating_sub(1).max(1) as f64;
             let needed_s = spacing * (order as f64 - 1.0);
             return Err(LearnError::ShortPast { samples: known, needed: order, needed_s });
         }
         let mut values = past.values.to_vec();
-        // Without an input there is no weight for one.
+        // Without an input, no weight reads it.
         let inputs = [past.input.unwrap_or_default(), ahead.input.unwrap_or_default()].concat();
-        // Only a message counts from here.
+        // Only used in an error message.
         let first = past.times_s.first().copied().unwrap_or_default();
         for (number, time) in ahead.times_s.iter().enumerate() {
             let now = known + number;

@@ -1,4 +1,4 @@
-//! What every learner is judged beside: models that know nothing, or what a simulator knows.
+//! Baselines for every learner: models without knowledge, and simulators.
 
 mod arx;
 mod persistence;
@@ -14,17 +14,17 @@ use crate::data::DataSet;
 use crate::{Context, Fitted, LearnError};
 use estimator::Reached;
 
-/// A baseline of the registry.
+/// Entry of a baseline in the registry.
 pub struct Baseline {
     /// Identifier, as in configurations.
     pub id: &'static str,
-    /// Name in words.
+    /// Name for tables and reports.
     pub title: &'static str,
-    /// Makes it from the training part.
+    /// Builds the baseline from the training part.
     pub make: fn(&DataSet, &Context<'_>) -> Result<Fitted, LearnError>,
 }
 
-/// Every baseline, in the order of tables.
+/// All baselines, in the order of tables.
 pub static BASELINES: &[Baseline] = &[
     Baseline { id: "persistence", title: "Last value held", make: |_, _| Ok(done(Persistence, 0)) },
     Baseline { id: "nominal", title: "Nominal simulator", make: nominal },

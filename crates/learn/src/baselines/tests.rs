@@ -1,4 +1,4 @@
-//! What baselines know, and no more.
+//! Tests that baselines use the knowledge they are given and no more.
 
 use super::*;
 use crate::judge::{runs, score};

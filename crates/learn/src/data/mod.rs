@@ -1,4 +1,4 @@
-//! Sets of records, split by record or by time, with what every learner needs to know of them.
+//! Sets of records, split by record or by time, with the scales that every learner needs.
 
 mod period;
 mod set;
@@ -17,7 +17,7 @@ pub use split::{Split, SplitKind};
 pub use trajectory::Trajectory;
 pub use windows::{Window, windows};
 
-/// A count with its noun.
+/// Formats a count with its noun.
 pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("{count} {noun}") } else { format!("{count} {noun}s") }
 }

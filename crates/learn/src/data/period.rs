@@ -1,9 +1,11 @@
-//! Typical period and noise of records.
+//! Typical period and sensor noise of records.
 
 use super::Trajectory;
 
-/// Typical period of the motion in seconds: mean distance of crossings of the mean, each with a dead band of a fifth of
-/// the standard deviation so that noise makes none; `None` for fewer than three crossings.
+/// Estimates the typical period of the motion in seconds: the mean distance between crossings of the mean.
+///
+/// A dead band of a fifth of the standard deviation keeps noise from adding crossings. `None` for fewer than
+/// three crossings.
 #[must_use]
 pub fn period(parts: &[Trajectory]) -> Option<f64> {
     let (mut spans, mut crossings) = (0.0, 0);
@@ -31,8 +33,8 @@ pub fn period(parts: &[Trajectory]) -> Option<f64> {
     (crossings >= 2).then(|| 2.0 * spans / crossings as f64)
 }
 
-/// Standard deviation of white sensor noise, from sixth differences: a smooth motion leaves next to nothing in them,
-/// white noise leaves √924 times its own.
+/// Estimates the standard deviation of white sensor noise from sixth differences: a smooth motion leaves
+/// almost nothing in them, white noise leaves √924 times its standard deviation.
 #[must_use]
 pub fn noise_floor(parts: &[Trajectory]) -> f64 {
     let (mut sum, mut count) = (0.0, 0_usize);

@@ -1,4 +1,4 @@
-//! A data set: split trajectories with scales learned from the training part only.
+//! Data sets: split trajectories with scales computed from the training part only.
 
 use super::period::{noise_floor, period};
 use super::split::split;
@@ -7,7 +7,7 @@ use crate::LearnError;
 use dynamics::{Hold, NominalSimulator};
 use serde::{Deserialize, Serialize};
 
-/// Mean and spread of what models see, from the training part.
+/// Means and spreads of the models' inputs and outputs, from the training part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scale {
     /// Mean position.
@@ -16,30 +16,30 @@ pub struct Scale {
     pub position: f64,
     /// Root mean square of the velocity.
     pub velocity: f64,
-    /// Mean input; 0 without one.
+    /// Mean input; 0 without an input.
     pub input_center: f64,
-    /// Standard deviation of the input; 1 without one.
+    /// Standard deviation of the input; 1 without an input.
     pub input: f64,
     /// Root mean square of the acceleration.
     pub acceleration: f64,
 }
 
-/// Trajectories to learn from, to validate on and to test on.
+/// Training, validation and test trajectories of one system.
 #[derive(Debug, Clone)]
 pub struct DataSet {
-    /// Learned from.
+    /// Part that models are fitted to.
     pub train: Vec<Trajectory>,
-    /// Used to choose among models; never to judge them.
+    /// Part that chooses among models; it never scores them.
     pub validation: Vec<Trajectory>,
-    /// Used to judge only.
+    /// Part that only scores models.
     pub test: Vec<Trajectory>,
     /// Unit of the positions.
     pub unit: String,
-    /// What is believed of the system, where something is.
+    /// Nominal simulator of the system; `None` if there is none.
     pub nominal: Option<NominalSimulator>,
-    /// What inputs do between samples.
+    /// Interpolation of the input between samples.
     pub hold: Hold,
-    /// Time at the start of a stretch that is given to a model as its past, in seconds.
+    /// Length of the past that a model gets at the start of a stretch, in seconds.
     pub warm_up_s: f64,
     /// Typical period of the motion, in seconds.
     pub period_s: f64,
@@ -49,33 +49,35 @@ pub struct DataSet {
     pub scale: Scale,
 }
 
-/// What a data set is made from.
+/// Options for making a data set.
 #[derive(Debug, Clone)]
 pub struct Making {
-    /// How it is split.
+    /// Split into training, validation and test part.
     pub split: Split,
     /// Unit of the positions.
     pub unit: String,
-    /// What is believed of the system.
+    /// Nominal simulator of the system; `None` if there is none.
     pub nominal: Option<NominalSimulator>,
-    /// What inputs do between samples; kept where it is left open, but see [`crate::data_set`].
+    /// Interpolation of the input between samples; `None` means zero-order hold here, but see
+    /// [`crate::data_set`].
     pub hold: Option<Hold>,
-    /// Length of the past given to a model, in seconds; a period where it is left open.
+    /// Length of the past given to a model, in seconds; `None` means one period.
     pub warm_up_s: Option<f64>,
-    /// Typical period in seconds; read from the training part where it is left open.
+    /// Typical period in seconds; `None` means estimated from the training part.
     pub period_s: Option<f64>,
-    /// Sensor noise; read from the training part where it is left open.
+    /// Standard deviation of the sensor noise, in the unit of the positions; `None` means estimated from the
+    /// training part.
     pub noise: Option<f64>,
 }
 
-/// Rates within a set differ by this much at most.
+/// Largest ratio of sample rates within a set.
 const RATES: f64 = 1.05;
 
 impl DataSet {
-    /// Splits and checks records.
+    /// Checks and splits records.
     ///
     /// # Errors
-    /// [`LearnError`] for a set that nothing can be learned from or judged on; the message says what to do.
+    /// [`LearnError`] for a set that cannot be learned from or scored on; the message states the remedy.
     pub fn new(records: &[Trajectory], making: Making) -> Result<Self, LearnError> {
         check_inputs(records)?;
         check_rates(records)?;
@@ -108,31 +110,32 @@ impl DataSet {
         })
     }
 
-    /// Whether the records have an input.
+    /// Returns `true` if the records have an input.
     #[must_use]
     pub fn is_driven(&self) -> bool {
         self.train.iter().any(|part| part.input().is_some())
     }
 
-    /// Samples of the training part.
+    /// Returns the number of samples in the training part.
     #[must_use]
     pub fn training_samples(&self) -> usize {
         self.train.iter().map(Trajectory::len).sum()
     }
 
-    /// Longest step of an integrator, in seconds: a sixtieth of a period.
+    /// Returns the longest integration step, in seconds: a sixtieth of a period.
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         self.period_s / 60.0
     }
 
-    /// Training pieces of about `seconds`, together at most `samples`: evenly chosen ones where there are more.
+    /// Cuts the training part into pieces of about `seconds`. If they have more than `samples` samples in
+    /// total, evenly chosen pieces are kept.
     #[must_use]
     pub fn training_pieces(&self, seconds: f64, samples: usize) -> Vec<Trajectory> {
         let pieces: Vec<Trajectory> = self.train.iter().flat_map(|part| part.pieces(seconds)).collect();
         let all: usize = pieces.iter().map(Trajectory::len).sum();
         let keep = (samples as f64 / all.max(1) as f64).min(1.0);
-        // Piece number n is taken where n·keep passes the next whole number.
+        // Piece number n is kept if n·keep passes the next whole number there.
         let taken = |number: usize| ((number + 1) as f64 * keep).floor() > (number as f64 * keep).floor();
         let chosen: Vec<Trajectory> = pieces
             .iter()
@@ -193,7 +196,7 @@ fn scale(train: &[Trajectory], period_s: f64) -> Scale {
     }
 }
 
-/// Mean and standard deviation.
+/// Returns mean and standard deviation.
 fn moments<I: Iterator<Item = f64>>(values: impl Fn() -> I) -> (f64, f64) {
     let count = values().count().max(1) as f64;
     let mean = values().sum::<f64>() / count;

@@ -1,12 +1,12 @@
-//! Velocity and acceleration by local polynomials, and values between samples, on uneven times too.
+//! Velocity and acceleration by local polynomials, and interpolation between samples, also at uneven times.
 
 use super::Trajectory;
 use nalgebra::{SMatrix, SVector};
 
-/// A state read from neighboring samples.
+/// State estimated from neighboring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalState {
-    /// Number of the sample.
+    /// Index of the sample, from 0.
     pub sample: usize,
     /// Time in seconds.
     pub time_s: f64,
@@ -16,15 +16,15 @@ pub struct LocalState {
     pub velocity: f64,
     /// Acceleration.
     pub acceleration: f64,
-    /// Input; 0 without one.
+    /// Input; 0 without an input.
     pub input: f64,
 }
 
-/// Terms of the local polynomial: degree 4.
+/// Number of terms of the local polynomial, of degree 4.
 const TERMS: usize = 5;
 
-/// States at every sample whose neighbors within `half_width_s` reach to both sides: least squares of degree 4
-/// (Savitzky and Golay, Analytical Chemistry 36 (1964) 1627, without their even spacing).
+/// Estimates the state at every sample that has neighbors up to `half_width_s` on both sides, by least
+/// squares of degree 4 (Savitzky and Golay, Analytical Chemistry 36 (1964) 1627, without their even spacing).
 #[must_use]
 pub fn local_states(part: &Trajectory, half_width_s: f64) -> Vec<LocalState> {
     let interval = part.duration_s() / part.len().saturating_sub(1).max(1) as f64;
@@ -37,7 +37,8 @@ pub fn local_states(part: &Trajectory, half_width_s: f64) -> Vec<LocalState> {
     times.filter_map(|(sample, &time)| local_state(part, sample, time, half)).collect()
 }
 
-/// State at a sample from its neighbors within `half` seconds.
+/// Estimates the state at a sample from the neighbors within `half` seconds; `None` if they do not determine
+/// it.
 pub(crate) fn local_state(part: &Trajectory, sample: usize, time: f64, half: f64) -> Option<LocalState> {
     let from = part.times_s().partition_point(|&other| other < time - half);
     let to = part.times_s().partition_point(|&other| other <= time + half);
@@ -57,12 +58,13 @@ pub(crate) fn local_state(part: &Trajectory, sample: usize, time: f64, half: f64
         position,
         velocity: slope / half,
         acceleration: 2.0 * curvature / (half * half),
-        // Without an input nothing drives.
+        // Without an input nothing drives the system.
         input: part.input().and_then(|input| input.get(sample)).copied().unwrap_or(0.0),
     })
 }
 
-/// Value at a time from the four samples around it: Lagrange's cubic; exact at a sample.
+/// Interpolates the value at a time with Lagrange's cubic through the four samples around it; exact at a
+/// sample.
 pub(crate) fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
     let next = times.partition_point(|&other| other < time);
     let from = next.saturating_sub(2).min(times.len().saturating_sub(4));

@@ -1,34 +1,35 @@
-//! Which part of which record is learned from, validated on, and tested on.
+//! Split of records into training, validation and test parts.
 
 use super::Trajectory;
 use crate::LearnError;
 use serde::{Deserialize, Serialize};
 
-/// What is held out.
+/// Kind of held-out data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SplitKind {
-    /// Whole records, the last ones as listed.
+    /// Whole records: the last ones in the list.
     #[default]
     Record,
     /// The end of every record.
     Time,
-    /// Whole records, of which only the end is tested: other starts and later times than any learned from.
+    /// Whole records, of which only the end is scored: initial states and times that were not trained on.
     Both,
 }
 
-/// How a set is split.
+/// Options of a split.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Split {
-    /// What is held out.
+    /// Kind of held-out data.
     pub kind: SplitKind,
-    /// Records to test on, the last ones as listed; by record only.
+    /// Number of test records, the last ones in the list; used if records are held out.
     pub test_records: usize,
-    /// Records to validate on, before those. With 0, the end of the training records.
+    /// Number of validation records, those before the test records. With 0, the end of the training records
+    /// validates.
     pub validation_records: usize,
-    /// Share of a record's time at its end that is tested on, by time.
+    /// Share of a record's time, at its end, that is scored; used if ends are held out.
     pub test_share: f64,
-    /// Share of a training part's time at its end that is validated on, where no record is.
+    /// Share of a training part's time, at its end, that validates if no record does.
     pub validation_share: f64,
 }
 
@@ -39,7 +40,7 @@ pub(super) struct Parts {
     pub(super) test: Vec<Trajectory>,
 }
 
-/// Splits records; every part has at least one trajectory.
+/// Splits records; every part gets at least one trajectory.
 pub(super) fn split(records: &[Trajectory], split: &Split) -> Result<Parts, LearnError> {
     let Some(first) = records.first() else { return Err(LearnError::NoRecords) };
     if split.kind == SplitKind::Time {
@@ -81,7 +82,7 @@ fn with_validation(
     Ok(Parts { train, validation, test })
 }
 
-/// All but the last share of the time, and that share.
+/// Splits a record in time: all but the last share, and that share.
 fn at_share(record: &Trajectory, share: f64) -> (Trajectory, Trajectory) {
     let cut = record.samples_within((1.0 - share) * record.duration_s());
     (record.part(0, cut), record.part(cut, record.len()))

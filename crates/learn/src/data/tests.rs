@@ -1,4 +1,4 @@
-//! Data sets that nothing can be learned from are refused, each with its own words.
+//! Tests that unusable data sets are refused, each with its own message.
 
 use super::*;
 use crate::LearnError;
@@ -84,7 +84,7 @@ fn parts_share_no_sample_and_scales_come_from_training_alone() {
 fn the_noise_and_the_period_are_read_from_the_record() {
     let set = DataSet::new(&records(6), making(None)).unwrap();
     assert!((set.noise / 1e-3 - 1.0).abs() < 0.1, "{}", set.noise);
-    // √(16 + 24) rad/s for small swings, slower for large ones.
+    // The frequency is √(16 + 24) rad/s for small swings and lower for large ones.
     assert!((1.0..1.15).contains(&set.period_s), "{}", set.period_s);
 }
 

@@ -1,11 +1,11 @@
-//! One record, or a stretch of it, as learners see it.
+//! Trajectories: records, or stretches of records, as learners see them.
 
 use crate::LearnError;
 
-/// Positions over time, with the input where there is one.
+/// Positions over time, with an optional input.
 ///
-/// Invariants, checked when it is made: every number finite, times strictly increasing (they may be uneven), one value
-/// and, where there is an input, one input for each time.
+/// Invariants, checked by [`Trajectory::new`]: every number is finite; times increase strictly (they may be
+/// uneven); there is one position and, for a driven record, one input per time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     name: String,
@@ -15,10 +15,11 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// Makes a trajectory from columns: times in seconds, values in the unit of the position, inputs in their own.
+    /// Builds a trajectory from columns: times in seconds, positions in their unit, inputs in theirs.
     ///
     /// # Errors
-    /// [`LearnError::UnequalColumns`], [`LearnError::NotFinite`], [`LearnError::TimeStands`], each with the place.
+    /// [`LearnError::UnequalColumns`], [`LearnError::NotFinite`], [`LearnError::TimeStands`], each with the
+    /// sample.
     pub fn new(
         name: impl Into<String>,
         times_s: Vec<f64>,
@@ -49,61 +50,61 @@ impl Trajectory {
         Ok(Self { name, times_s, values, input })
     }
 
-    /// Name for messages and tables.
+    /// Returns the name used in messages and tables.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Times in seconds, strictly increasing.
+    /// Returns the times in seconds, strictly increasing.
     #[must_use]
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    /// Observed positions.
+    /// Returns the observed positions.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The input, where there is one.
+    /// Returns the input; `None` for a free motion.
     #[must_use]
     pub fn input(&self) -> Option<&[f64]> {
         self.input.as_deref()
     }
 
-    /// Number of samples.
+    /// Returns the number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
         self.times_s.len()
     }
 
-    /// Whether there are no samples.
+    /// Returns `true` if there are no samples.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.times_s.is_empty()
     }
 
-    /// Time from the first to the last sample, in seconds.
+    /// Returns the time from the first to the last sample, in seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        // Of no sample no time passes.
+        // No samples span no time.
         self.times_s.first().zip(self.times_s.last()).map_or(0.0, |(first, last)| last - first)
     }
 
-    /// Mean samples per second; 0 for fewer than two samples.
+    /// Returns the mean sample rate in Hz; 0 for fewer than two samples.
     #[must_use]
     pub fn rate_hz(&self) -> f64 {
         if self.len() < 2 { 0.0 } else { (self.len() - 1) as f64 / self.duration_s() }
     }
 
-    /// The samples `from..to`, as many of them as there are.
+    /// Returns the samples `from..to`, clipped to the samples that exist.
     #[must_use]
     pub fn part(&self, from: usize, to: usize) -> Self {
         let to = to.min(self.len());
         let from = from.min(to);
-        // The range was cut to what there is.
+        // The range was clipped to the existing samples.
         let cut = |column: &[f64]| column.get(from..to).unwrap_or_default().to_vec();
         Self {
             name: self.name.clone(),
@@ -113,21 +114,23 @@ impl Trajectory {
         }
     }
 
-    /// The same trajectory under another name.
+    /// Returns the same trajectory under another name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
     }
 
-    /// Number of samples within `seconds` of the first, at least one where there is any.
+    /// Returns the number of samples within `seconds` of the first; at least one unless the trajectory is
+    /// empty.
     #[must_use]
     pub fn samples_within(&self, seconds: f64) -> usize {
-        // Of no sample none lies within.
+        // Of no samples, none lies within.
         let end = self.times_s.first().copied().unwrap_or_default() + seconds * (1.0 + 1e-9);
         self.times_s.partition_point(|&time| time <= end)
     }
 
-    /// Consecutive pieces of about `seconds`, each beginning with the last sample of the one before.
+    /// Cuts the trajectory into consecutive pieces of about `seconds`. Each piece begins with the last sample
+    /// of the previous one.
     #[must_use]
     pub fn pieces(&self, seconds: f64) -> Vec<Self> {
         let count = (self.duration_s() / seconds).round().max(1.0) as usize;

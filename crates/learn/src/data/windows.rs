@@ -1,21 +1,22 @@
-//! Windows of past and future, for models that learn from sequences.
+//! Windows of past and future, for sequence models.
 
 use super::Trajectory;
 
-/// A stretch of a training part: the past that a model is given, and the future that it has to predict.
+/// Stretch of a part: the past that a model gets, and the future that it predicts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
-    /// Which trajectory of the part.
+    /// Index of the trajectory within the part.
     pub trajectory: usize,
     /// First sample of the past.
     pub from: usize,
     /// First sample of the future.
     pub now: usize,
-    /// Sample after the last of the future.
+    /// End of the future (exclusive).
     pub to: usize,
 }
 
-/// Windows of `past` and `future` samples, every `stride` samples, in the order of trajectories and times.
+/// Cuts trajectories into windows of `past` plus `future` samples, one every `stride` samples, in the order
+/// of trajectories and times.
 #[must_use]
 pub fn windows(parts: &[Trajectory], past: usize, future: usize, stride: usize) -> Vec<Window> {
     let of = |(trajectory, part): (usize, &Trajectory)| {

@@ -1,7 +1,9 @@
-//! Expressions of position, velocity and input: read from text, evaluated with derivatives, written as text.
+//! Expressions of position, velocity and input: parsed from text, evaluated with derivatives, written as
+//! text.
 //!
-//! Grammar: numbers, `theta`, `theta_dot`, `u`, `pi`; `+ - * /`, `^` with a whole exponent; parentheses, `|…|`; the
-//! functions of [`Function`]. `sign(theta_dot)` and `|theta_dot|` follow the direction of the motion, also at rest.
+//! Grammar: numbers, `theta`, `theta_dot`, `u`, `pi`; `+ - * /`, `^` with a whole exponent; parentheses,
+//! `|…|`; the functions of [`Function`]. `sign(theta_dot)` and `|theta_dot|` follow the direction of the
+//! motion, also at rest.
 
 mod parse;
 
@@ -11,7 +13,7 @@ use crate::Place;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A quantity that an expression reads.
+/// Variable of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
     /// Position, `theta`.
@@ -23,10 +25,10 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// Every variable.
+    /// All variables.
     pub const ALL: [Self; 3] = [Self::Position, Self::Velocity, Self::Input];
 
-    /// Name in text.
+    /// Returns the variable's name in text.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -37,7 +39,7 @@ impl Variable {
     }
 }
 
-/// A function of one argument.
+/// Function of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Function {
     /// Sine of an angle in rad.
@@ -59,11 +61,11 @@ pub enum Function {
 }
 
 impl Function {
-    /// Every function.
+    /// All functions.
     pub const ALL: [Self; 8] =
         [Self::Sin, Self::Cos, Self::Tanh, Self::Exp, Self::Log, Self::Sqrt, Self::Abs, Self::Sign];
 
-    /// Name in text.
+    /// Returns the function's name in text.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -78,7 +80,7 @@ impl Function {
         }
     }
 
-    /// Value and derivative.
+    /// Returns value and derivative at `x`.
     fn at(self, x: f64) -> [f64; 2] {
         match self {
             Self::Sin => [x.sin(), x.cos()],
@@ -97,7 +99,7 @@ fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
-/// An operator between two expressions.
+/// Binary operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
     /// Sum.
@@ -110,7 +112,7 @@ pub enum Operator {
     Divide,
 }
 
-/// An expression.
+/// Expression tree.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Expression {
@@ -120,17 +122,17 @@ pub enum Expression {
     Variable(Variable),
     /// A function of an expression.
     Call(Function, Box<Self>),
-    /// Two expressions joined.
+    /// Binary operation on two expressions.
     Join(Operator, Box<Self>, Box<Self>),
-    /// An expression to a whole power.
+    /// Whole power of an expression.
     Power(Box<Self>, i32),
 }
 
-/// Value, derivative with respect to position, derivative with respect to velocity.
+/// Value, derivative with respect to position, and derivative with respect to velocity.
 pub type Dual = [f64; 3];
 
 impl Expression {
-    /// Value and derivatives at a place.
+    /// Returns value and derivatives at a state.
     #[must_use]
     pub fn dual(&self, place: &Place) -> Dual {
         match self {
@@ -169,7 +171,7 @@ impl Expression {
         }
     }
 
-    /// True where it depends on the direction of the motion.
+    /// Returns `true` if the value depends on the direction of the motion.
     #[must_use]
     pub fn is_directed(&self) -> bool {
         match self {
@@ -180,7 +182,7 @@ impl Expression {
         }
     }
 
-    /// True where a variable is in it.
+    /// Returns `true` if the expression contains the variable.
     #[must_use]
     pub fn reads(&self, variable: Variable) -> bool {
         match self {
@@ -191,7 +193,7 @@ impl Expression {
         }
     }
 
-    /// Number of numbers, variables, functions and operators: the complexity.
+    /// Returns the number of numbers, variables, functions and operators: the complexity.
     #[must_use]
     pub fn nodes(&self) -> usize {
         match self {
@@ -202,7 +204,7 @@ impl Expression {
     }
 }
 
-/// Precedence of the outermost part of an expression.
+/// Returns the precedence of the outermost operation.
 fn binding(expression: &Expression) -> u8 {
     match expression {
         Expression::Join(Operator::Add | Operator::Subtract, ..) => 0,

@@ -1,25 +1,25 @@
-//! Expressions from text, by recursive descent.
+//! Parser for expressions, by recursive descent.
 
 use super::{Expression, Function, Operator, Variable};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Reason why a text is no expression.
+/// Reason why a text is not an expression.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("`{text}` cannot be read at character {at}: {problem}")]
 pub struct Unreadable {
     /// The text.
     pub text: String,
-    /// Place, counted from 1.
+    /// Position of the fault, counted in characters from 1.
     pub at: usize,
     /// The fault, and what was expected.
     pub problem: String,
 }
 
-/// Deepest nesting.
+/// Deepest nesting allowed.
 const DEEPEST: usize = 64;
 
-/// Largest exponent.
+/// Largest exponent allowed.
 const LARGEST: i32 = 20;
 
 struct Reader<'a> {
@@ -53,17 +53,17 @@ impl TryFrom<String> for Expression {
 
 impl Reader<'_> {
     fn wrong(&self, problem: impl Into<String>) -> Unreadable {
-        // A place between letters cannot be told: the start of the text.
+        // A byte offset within a character cannot be counted; report the start of the text.
         let at = self.text.get(..self.at).map_or(0, |before| before.chars().count()) + 1;
         Unreadable { text: self.text.to_owned(), at, problem: problem.into() }
     }
 
     fn rest(&self) -> &str {
-        // Behind the end there is nothing to read.
+        // Beyond the end there is nothing left to read.
         self.text.get(self.at..).unwrap_or_default()
     }
 
-    /// The next character that is no space.
+    /// Skips spaces and returns the next character.
     fn peek(&mut self) -> Option<char> {
         self.at += self.rest().len() - self.rest().trim_start().len();
         self.rest().chars().next()
@@ -165,7 +165,7 @@ impl Reader<'_> {
     fn number(&mut self) -> Result<Expression, Unreadable> {
         let rest = self.rest();
         let mut length = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
-        // An exponent, with or without a sign.
+        // An exponent, with an optional sign.
         if let Some(after) = rest.get(length..).and_then(|after| after.strip_prefix(['e', 'E'])) {
             let digits = after.strip_prefix(['+', '-']).unwrap_or(after);
             let count = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
@@ -189,7 +189,7 @@ impl Reader<'_> {
     fn word(&mut self) -> Result<Expression, Unreadable> {
         let rest = self.rest();
         let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-        // The length was found in it.
+        // The length was found in this text.
         let word = rest.get(..length).unwrap_or_default().to_owned();
         if let Some(variable) = Variable::ALL.into_iter().find(|variable| variable.name() == word) {
             self.at += length;

@@ -1,4 +1,4 @@
-//! A law of motion with weights.
+//! Laws of motion with weights.
 
 use crate::Place;
 
@@ -13,18 +13,21 @@ pub struct Slope {
     pub weights: Vec<f64>,
 }
 
-/// An acceleration as a function of the state, with weights. Between reversals of the velocity it is smooth; what
-/// depends on the sign of the velocity takes `direction`.
+/// Acceleration as a function of the state, with weights.
+///
+/// It is smooth between reversals of the velocity; terms that depend on the sign of the velocity use
+/// `direction`.
 pub trait Field: Send + Sync {
-    /// Number of weights.
+    /// Returns the number of weights.
     fn weights(&self) -> usize;
 
-    /// Whether it depends on the direction, so that reversals are events.
+    /// Returns `true` if the acceleration depends on the direction of motion; reversals are then events.
     fn is_directed(&self) -> bool;
 
-    /// Acceleration at a place.
+    /// Returns the acceleration at a state.
     fn acceleration(&self, weights: &[f64], place: &Place) -> f64;
 
-    /// Acceleration with its derivatives; `slope.weights` has one entry for each weight, all overwritten.
+    /// Returns the acceleration and writes its derivatives; `slope.weights` has one entry per weight, and all
+    /// are overwritten.
     fn sloped(&self, weights: &[f64], place: &Place, slope: &mut Slope) -> f64;
 }

@@ -1,4 +1,4 @@
-//! A field with weights as a model that predicts.
+//! Model that integrates a field with weights.
 
 use super::field::Field;
 use super::run::Run;
@@ -12,23 +12,23 @@ use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 use serde::{Deserialize, Serialize};
 
-/// How a field is integrated, and the noise of what it predicts.
+/// Integration settings of a field, and the noise of its predictions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Running {
     /// Longest step in seconds.
     pub longest_step_s: f64,
     /// Typical period in seconds.
     pub period_s: f64,
-    /// What inputs do between samples.
+    /// Interpolation of the input between samples.
     pub hold: Hold,
-    /// Size of a position beyond which the motion runs away.
+    /// Absolute position beyond which the motion counts as diverged.
     pub bound: f64,
-    /// Standard deviation of a measured position about a predicted one.
+    /// Standard deviation of a measured position about the prediction.
     pub noise: f64,
 }
 
 impl Running {
-    /// As a data set asks for, with the residuals' root mean square as noise.
+    /// Takes the integration settings of a data set; `noise` is the root mean square residual.
     #[must_use]
     pub fn new(data: &DataSet, noise: f64) -> Self {
         Self {
@@ -41,18 +41,18 @@ impl Running {
     }
 }
 
-/// Weights drawn from what the data leave open.
+/// Draws from the posterior of the weights.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Posterior {
-    /// Draws, each as long as the weights.
+    /// Draws, each as long as the weights; empty for a model without a posterior.
     pub draws: Vec<Vec<f64>>,
 }
 
-/// Draws that a band is made from.
+/// Number of draws that a band is computed from.
 const DRAWS: usize = 24;
 
 impl Posterior {
-    /// Draws from a normal distribution around `mean`; none where the covariance is not positive definite.
+    /// Draws from a normal distribution around `mean`; empty if the covariance is not positive definite.
     #[must_use]
     pub fn normal(mean: &[f64], covariance: &DMatrix<f64>, seed: &Seed) -> Self {
         let Some(root) = crate::linear::raised(covariance, 1e-12).cholesky() else { return Self::default() };
@@ -66,27 +66,27 @@ impl Posterior {
     }
 }
 
-/// A law of motion as a model: the start state is the one whose motion lies nearest to the past.
+/// Law of motion as a model. The initial state of a prediction is the one that fits the past best.
 pub struct FlowModel {
-    /// The learner's id.
+    /// Identifier of the learner.
     pub learner: &'static str,
-    /// The law.
+    /// Law of motion.
     pub field: Box<dyn Field>,
-    /// Its weights.
+    /// Weights of the law.
     pub weights: Vec<f64>,
-    /// Draws of the weights, for bands; none for a model without.
+    /// Draws of the weights, for bands; empty for a model without bands.
     pub posterior: Posterior,
-    /// How it is integrated.
+    /// Integration settings.
     pub running: Running,
-    /// Coefficients, where the law has some.
+    /// Coefficients of the law; empty if it has none.
     pub coefficients: Vec<Coefficient>,
-    /// The law as text, where it is one.
+    /// The law as text; `None` if it cannot be written as an equation.
     pub equation: Option<String>,
-    /// What makes the field again, for a file.
+    /// JSON form from which the field is rebuilt when the model is read from a file.
     pub form: serde_json::Value,
 }
 
-/// What a file says of a flow beside its weights.
+/// Contents of a flow's file beside the weights.
 #[derive(Serialize, Deserialize)]
 struct Described {
     running: Running,
@@ -95,7 +95,7 @@ struct Described {
     form: serde_json::Value,
 }
 
-/// Steps of a search for a start state.
+/// Gauss–Newton steps of a search for an initial state.
 const STEPS: usize = 8;
 
 impl FlowModel {
@@ -109,8 +109,8 @@ impl FlowModel {
         }
     }
 
-    /// The state at the first sample of the past whose motion lies nearest to it, with its covariance per unit of
-    /// variance of a sample: Gauss–Newton with differences.
+    /// Fits the state at the past's first sample by Gauss–Newton with finite differences. Returns it with its
+    /// covariance per unit variance of a sample.
     fn start(&self, weights: &[f64], past: &Trajectory) -> Result<(State, Matrix2<f64>), LearnError> {
         let run = self.run(weights);
         let motion = |state: State| {
@@ -159,14 +159,15 @@ impl FlowModel {
 
     fn ahead(&self, weights: &[f64], state: State, all: &Joined) -> Result<Vec<f64>, LearnError> {
         let motion = self.run(weights).motion(state, &all.times_s, all.input.as_deref(), false)?;
-        // Nothing lies ahead of a past that is all.
+        // If the past covers all times, nothing lies ahead.
         Ok(motion.positions.get(all.past..).unwrap_or_default().to_vec())
     }
 
-    /// A stored model with the field that its form makes.
+    /// Restores a stored model; `field` rebuilds the field from its form.
     ///
     /// # Errors
-    /// [`LearnError::Stored`] for a file of another form, or weights of another number than the field's.
+    /// [`LearnError::Stored`] for a file of another form, or if the number of weights differs from the
+    /// field's.
     pub fn restore(
         learner: &'static str,
         stored: &Stored,
@@ -194,7 +195,7 @@ impl FlowModel {
     }
 }
 
-/// Past and future in one row of times.
+/// Past and future in one sequence of times.
 struct Joined {
     times_s: Vec<f64>,
     input: Option<Vec<f64>>,
@@ -228,7 +229,7 @@ impl Model for FlowModel {
         let mut squares = vec![0.0; values.len()];
         let mut generator = Seed::new(0).child("start states").generator();
         for draw in &self.posterior.draws {
-            // A draw that runs away says nothing of the band but that it is wide: it counts at the bound.
+            // A diverging draw shows only that the band is wide; it counts at the bound.
             let run = self.start(draw, &past_part).and_then(|(state, inverse)| {
                 self.ahead(draw, scattered(state, &(inverse * variance), &mut generator), &all)
             });
@@ -282,7 +283,7 @@ impl Model for FlowModel {
     }
 }
 
-/// A state drawn from a normal distribution.
+/// Draws a state from a normal distribution.
 fn scattered(state: State, covariance: &Matrix2<f64>, generator: &mut impl Rng) -> State {
     let by = Vector2::new(StandardNormal.sample(generator), StandardNormal.sample(generator));
     match covariance.cholesky() {

@@ -1,39 +1,40 @@
 //! Integration of a field from sample to sample, with sensitivities.
 //!
-//! Runge–Kutta of order four with steps that end on samples. With a directed field a reversal of the velocity is an
-//! event: the step is solved anew to end there, and the motion goes on in the other direction, or rests until the torque
-//! exceeds what holds it. Sensitivities are those of the discrete steps; at a reversal the velocity's jump by f⁺/f⁻, the
-//! saltation (Leine, Nijmeijer 2004, section 7.3), at rest they vanish.
+//! Runge–Kutta of order four, with steps that end on samples. For a directed field, a reversal of the
+//! velocity is an event: the step is solved again to end at the reversal. The motion then continues in the
+//! other direction, or rests until the torque exceeds the dry friction. Sensitivities are those of the
+//! discrete steps. At a reversal, the velocity's sensitivity jumps by the factor f⁺/f⁻, the saltation (Leine,
+//! Nijmeijer 2004, section 7.3); at rest it vanishes.
 
 use super::field::{Field, Slope};
 use super::start::State;
 use crate::{LearnError, Place};
 use dynamics::Hold;
 
-/// Events within a sampling interval beyond which the motion counts as at rest.
+/// Number of events within a sampling interval beyond which the motion counts as at rest.
 const MOST_EVENTS: usize = 6;
 
-/// How a field is run.
+/// Field with weights and integration settings.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
-    /// The law.
+    /// Law of motion.
     pub field: &'a dyn Field,
-    /// Its weights.
+    /// Weights of the law.
     pub weights: &'a [f64],
     /// Longest step in seconds.
     pub longest_step_s: f64,
-    /// What the input does between samples.
+    /// Interpolation of the input between samples.
     pub hold: Hold,
-    /// Size of a position beyond which the motion runs away.
+    /// Absolute position beyond which the motion counts as diverged.
     pub bound: f64,
 }
 
-/// Positions at the times asked for, with sensitivities where these were wanted.
+/// Positions at the requested times, with optional sensitivities.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Motion {
     /// Positions.
     pub positions: Vec<f64>,
-    /// Row-major ∂position/∂(weights, start position, start velocity); empty unless wanted.
+    /// Row-major ∂position/∂(weights, initial position, initial velocity); empty unless requested.
     pub sensitivity: Vec<f64>,
     /// State at the last time.
     pub end: State,
@@ -46,7 +47,7 @@ struct Column {
     velocity: f64,
 }
 
-/// A motion on its way.
+/// State of an integration in progress.
 struct Going<'a> {
     run: Run<'a>,
     state: State,
@@ -57,10 +58,11 @@ struct Going<'a> {
 }
 
 impl Run<'_> {
-    /// Positions at `times_s` from a state at the first of them; `input` has one value for each time.
+    /// Integrates from a state at the first of `times_s` and returns the positions at all of them. `input`
+    /// has one value per time.
     ///
     /// # Errors
-    /// [`LearnError::Diverged`] where the motion runs away.
+    /// [`LearnError::Diverged`] if the position exceeds the bound or the velocity is not finite.
     pub fn motion(
         &self,
         start: State,
@@ -86,9 +88,9 @@ impl Run<'_> {
         };
         let mut motion = Motion { positions: vec![start.position], ..Motion::default() };
         going.note(&mut motion);
-        // Only a message counts from here.
+        // Only used in an error message.
         let first = times_s.first().copied().unwrap_or_default();
-        // Without an input nothing drives.
+        // Without an input nothing drives the system.
         let at = |number: usize| input.and_then(|input| input.get(number)).copied().unwrap_or(0.0);
         for (number, (&from, &to)) in times_s.iter().zip(times_s.iter().skip(1)).enumerate() {
             let end = if self.hold == Hold::Linear { at(number + 1) } else { at(number) };
@@ -109,7 +111,7 @@ impl Going<'_> {
         motion.sensitivity.extend(self.columns.iter().map(|column| column.position));
     }
 
-    /// Advances over a sampling interval, the input going straight from one value to the other.
+    /// Advances over a sampling interval; the input varies linearly from `input` to `end`.
     fn interval(&mut self, length: f64, input: f64, end: f64) {
         let steps = (length / self.run.longest_step_s - 1e-9).ceil().max(1.0);
         let (step, slope) = (length / steps, (end - input) / length);
@@ -142,7 +144,7 @@ impl Going<'_> {
         self.run.field.acceleration(self.run.weights, &place)
     }
 
-    /// Sets a motion at rest going where the torque allows it.
+    /// Starts a resting motion if the torque allows it. Returns `true` if it moves.
     fn sets_off(&mut self, input: f64) -> bool {
         if self.run.field.is_directed() {
             let ahead = self.acceleration(self.state.position, 0.0, 1.0, input);
@@ -156,7 +158,7 @@ impl Going<'_> {
         true
     }
 
-    /// Goes on after a reversal, or comes to rest.
+    /// Continues the motion after a reversal, or brings it to rest.
     fn reverse(&mut self, input: f64) {
         let before = self.acceleration(self.state.position, 0.0, self.direction, input);
         let after = self.acceleration(self.state.position, 0.0, -self.direction, input);
@@ -176,7 +178,8 @@ impl Going<'_> {
         self.columns.iter_mut().for_each(|column| column.velocity = 0.0);
     }
 
-    /// Length of the step that ends at the reversal, where there is one within `step`: Illinois' method on the velocity.
+    /// Returns the length of the step that ends at a reversal, found by the Illinois method on the velocity;
+    /// `None` if there is none within `step`.
     fn until_reversal(&self, step: f64, input: f64, slope: f64) -> Option<f64> {
         let velocity = |length: f64| self.plain(length, input, slope).velocity * self.direction;
         let (mut low, mut high) = (0.0, step);
@@ -185,7 +188,7 @@ impl Going<'_> {
             return None;
         }
         if at_low <= 0.0 {
-            // Just set off: it reverses only if it was moving.
+            // The motion has just started; it reverses only if it moved.
             at_low = velocity(1e-3 * step);
             low = 1e-3 * step;
             if at_low <= 0.0 {
@@ -209,7 +212,7 @@ impl Going<'_> {
         Some(0.5 * (low + high))
     }
 
-    /// One step of the state alone.
+    /// Takes one Runge–Kutta step of the state alone.
     fn plain(&self, h: f64, input: f64, slope: f64) -> State {
         let State { position: x, velocity: v } = self.state;
         let force = |x: f64, v: f64, at: f64| self.acceleration(x, v, self.direction, input + slope * at);
@@ -227,7 +230,7 @@ impl Going<'_> {
         }
     }
 
-    /// One step of the state and its columns.
+    /// Takes one Runge–Kutta step of the state and its sensitivities.
     fn step(&mut self, h: f64, input: f64, slope: f64) {
         if self.columns.is_empty() {
             self.state = self.plain(h, input, slope);
@@ -299,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Each half swing loses 2F/k, and where the spring's pull falls below F the body stays.
+    /// Each half swing loses 2F/k; the body stops where the spring's force is below F.
     #[test]
     fn dry_friction_takes_equal_steps_and_then_holds() {
         let library = Library::new(vec![Term::Position, Term::Direction]);
@@ -312,7 +315,7 @@ mod tests {
             let expected = (1.0 - 0.25 * swings) * if number.min(4) % 2 == 0 { 1.0 } else { -1.0 };
             assert!((position - expected).abs() < 2e-7, "{number}: {position} for {expected}");
         }
-        // ∂(turning point n)/∂F/(−k)… its size falls by 2/k with each half swing.
+        // ∂(turning point n)/∂F/(−k): its magnitude falls by 2/k with each half swing.
         let row: Vec<f64> = motion.sensitivity.chunks(4).nth(2).unwrap().to_vec();
         assert!((row[1] - 1.0).abs() < 1e-5, "{row:?}");
     }

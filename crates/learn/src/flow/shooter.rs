@@ -1,4 +1,4 @@
-//! Shooting with a field.
+//! Shooting with a field: prediction of pieces with their Jacobian.
 
 use super::field::Field;
 use super::run::Run;
@@ -8,7 +8,7 @@ use crate::LearnError;
 use crate::data::{DataSet, Trajectory};
 use dynamics::Hold;
 
-/// A field that predicts pieces.
+/// Field that predicts pieces.
 #[derive(Clone, Copy)]
 pub struct FieldShooter<'a> {
     field: &'a dyn Field,
@@ -17,11 +17,11 @@ pub struct FieldShooter<'a> {
     bound: f64,
 }
 
-/// Positions beyond so many standard deviations of the training part run away.
+/// Number of the training part's standard deviations beyond which a position counts as diverged.
 const FAR: f64 = 1e3;
 
 impl<'a> FieldShooter<'a> {
-    /// Steps and bounds as a data set asks for.
+    /// Takes longest step, input interpolation and bound from a data set.
     #[must_use]
     pub fn new(field: &'a dyn Field, data: &DataSet) -> Self {
         let bound = data.scale.center.abs() + FAR * data.scale.position;

@@ -1,4 +1,4 @@
-//! States at the start of a stretch.
+//! Initial states of stretches.
 
 use crate::data::{Trajectory, local_state};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,8 @@ pub struct State {
     pub velocity: f64,
 }
 
-/// State at the first sample of a piece, by a polynomial through the samples within a quarter of a period.
+/// Estimates the state at the first sample of a piece, by a polynomial through the samples within a quarter
+/// of a period.
 #[must_use]
 pub fn first_guess(piece: &Trajectory, period_s: f64) -> State {
     let interval = piece.duration_s() / piece.len().saturating_sub(1).max(1) as f64;

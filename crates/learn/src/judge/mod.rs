@@ -1,4 +1,4 @@
-//! Scores of models on records they never saw.
+//! Scores of models on unseen records.
 
 mod score;
 mod truth;

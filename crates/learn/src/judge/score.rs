@@ -1,4 +1,4 @@
-//! Free run, horizon, one step, coverage.
+//! Scores of free runs, prediction horizon, one-step error, and coverage.
 
 use crate::data::{DataSet, Trajectory};
 use crate::{Ahead, LearnError, Model, Past, Predicted};
@@ -12,37 +12,39 @@ pub struct Run {
     pub name: String,
     /// Times after the warm-up, in seconds.
     pub times_s: Vec<f64>,
-    /// What was observed there.
+    /// Observed positions at these times.
     pub observed: Vec<f64>,
-    /// What was predicted, or why nothing was.
+    /// Predicted positions, or the reason why the model predicted none.
     pub predicted: Result<Predicted, LearnError>,
 }
 
 /// Scores over a test part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
-    /// Root mean square error of the free run over all test samples after the warm-ups; infinite where a run failed.
+    /// Root mean square error of the free run over all test samples after the warm-ups; infinite if a run
+    /// failed.
     pub free_run_rmse: f64,
-    /// The same over the sensor's noise.
+    /// Root mean square error of the free run divided by the sensor's noise (× noise).
     pub over_noise: f64,
-    /// Time until the error, over a quarter of a period, passes three times the noise: median over trajectories, in
-    /// seconds. A run that never does counts with its whole length.
+    /// Prediction horizon: time until the root mean square error over a quarter of a period exceeds three
+    /// times the noise. Median over trajectories, in seconds; a run that never exceeds it counts with its
+    /// whole length.
     pub horizon_s: f64,
-    /// Root mean square error one sample ahead of a moving past; infinite where a step failed.
+    /// Root mean square error one sample ahead of a moving past; infinite if a step failed.
     pub one_step_rmse: f64,
-    /// Share of the observations within the stated 95 % band, where one is stated.
+    /// Share of the observations within the stated 95 % band; `None` if the model states no band.
     pub coverage_95: Option<f64>,
 }
 
-/// Places along a test trajectory at which one step is predicted.
+/// Number of samples along a test trajectory at which one step is predicted.
 const STEPS: usize = 50;
 
-/// Noises that the error passes at the end of the horizon.
+/// Error at the end of the horizon, as a multiple of the noise.
 const FLOORS: f64 = 3.0;
 
 fn past(part: &Trajectory, from: usize, to: usize) -> Past<'_> {
     Past {
-        // Within the part: a data set refuses shorter ones.
+        // The range lies within the part: a data set refuses shorter parts.
         times_s: part.times_s().get(from..to).unwrap_or_default(),
         // As above.
         values: part.values().get(from..to).unwrap_or_default(),
@@ -52,7 +54,7 @@ fn past(part: &Trajectory, from: usize, to: usize) -> Past<'_> {
 
 fn ahead(part: &Trajectory, from: usize, to: usize) -> Ahead<'_> {
     Ahead {
-        // Within the part: a data set refuses shorter ones.
+        // The range lies within the part: a data set refuses shorter parts.
         times_s: part.times_s().get(from..to).unwrap_or_default(),
         input: part.input().and_then(|input| input.get(from..to)),
     }
@@ -62,7 +64,7 @@ fn warm_up(part: &Trajectory, data: &DataSet) -> usize {
     part.samples_within(data.warm_up_s).clamp(8, part.len().saturating_sub(1).max(8))
 }
 
-/// Free runs of the test part, each from its warm-up, with bands where the model states them.
+/// Runs a model freely over each test trajectory from its warm-up, with bands if the model states them.
 #[must_use]
 pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
     let run = |part: &Trajectory| {
@@ -70,7 +72,7 @@ pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
         Run {
             name: part.name().to_owned(),
             times_s: ahead(part, now, end).times_s.to_vec(),
-            // A warm-up ends within its part.
+            // The warm-up ends within the part.
             observed: part.values().get(now..).unwrap_or_default().to_vec(),
             predicted: model.banded_run(&past(part, 0, now), &ahead(part, now, end)),
         }
@@ -78,9 +80,10 @@ pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
     data.test.iter().map(run).collect()
 }
 
-/// Free runs of the test part as [`runs`], but for what a model is given: past and input are white noise, normal with the
-/// trajectory's own means and standard deviations. An error that does not grow says that a model predicts the same
-/// whatever it is given.
+/// Runs a model freely as [`runs`] does, but on noise: past and input are white and normal, with the
+/// trajectory's own means and standard deviations.
+///
+/// An error that does not grow shows that the model's prediction does not depend on what it is given.
 #[must_use]
 pub fn runs_on_noise(model: &dyn Model, data: &DataSet, seed: &Seed) -> Vec<Run> {
     let run = |(number, part): (usize, &Trajectory)| {
@@ -89,14 +92,14 @@ pub fn runs_on_noise(model: &dyn Model, data: &DataSet, seed: &Seed) -> Vec<Run>
         let values = noise_like(part.values(), &seed.child("position"));
         let input = part.input().map(|input| noise_like(input, &seed.child("input")));
         let (before, after) = (past(part, 0, now), ahead(part, now, end));
-        // As many as there are samples of the part.
+        // There are as many noise values as samples of the part.
         let values = values.get(..now).unwrap_or_default();
         let past = Past { values, input: cut(&input, 0, now), ..before };
         let ahead = Ahead { input: cut(&input, now, end), ..after };
         Run {
             name: part.name().to_owned(),
             times_s: after.times_s.to_vec(),
-            // A warm-up ends within its part.
+            // The warm-up ends within the part.
             observed: part.values().get(now..).unwrap_or_default().to_vec(),
             predicted: model.free_run(&past, &ahead),
         }
@@ -108,7 +111,7 @@ fn cut(of: &Option<Vec<f64>>, from: usize, to: usize) -> Option<&[f64]> {
     of.as_ref().and_then(|of| of.get(from..to))
 }
 
-/// Normal numbers with the mean and the standard deviation of `values`.
+/// Draws normal numbers with the mean and the standard deviation of `values`.
 fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -121,7 +124,8 @@ fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
     values.iter().map(&mut draw).collect()
 }
 
-/// Root mean square error of free runs over the validation part, without bands; infinite where one fails.
+/// Returns the root mean square error of free runs over the validation part, without bands; infinite if a run
+/// fails.
 #[must_use]
 pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
     let (mut sum, mut count) = (0.0, 0_usize);
@@ -130,7 +134,7 @@ pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
         let Ok(found) = model.free_run(&past(part, 0, now), &ahead(part, now, end)) else {
             return f64::INFINITY;
         };
-        // A warm-up ends within its part.
+        // The warm-up ends within the part.
         let observed = part.values().get(now..).unwrap_or_default();
         sum += observed.iter().zip(&found.values).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         count += observed.len();
@@ -139,13 +143,13 @@ pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
     if error.is_finite() { error } else { f64::INFINITY }
 }
 
-/// Scores of a model's free runs, and of single steps along the test part.
+/// Scores a model's free runs, and its single steps along the test part.
 #[must_use]
 pub fn score(model: &dyn Model, runs: &[Run], data: &DataSet) -> Score {
     Score { one_step_rmse: one_step(model, data), ..score_of_runs(runs, data) }
 }
 
-/// Scores of free runs alone; the error of one step is not a number.
+/// Scores free runs alone; `one_step_rmse` is NaN.
 #[must_use]
 pub fn score_of_runs(runs: &[Run], data: &DataSet) -> Score {
     let (mut sum, mut count, mut covered, mut stated) = (0.0, 0_usize, 0_usize, 0_usize);
@@ -182,12 +186,13 @@ fn finite(error: f64) -> f64 {
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let (low, high) = (values.len().saturating_sub(1) / 2, values.len() / 2);
-    // Without a test part nothing was predicted for any time.
+    // Without a test part, nothing was predicted for any time.
     let at = |place: usize| values.get(place).copied().unwrap_or(0.0);
     0.5 * (at(low) + at(high))
 }
 
-/// Time from the first sample until the root mean square over the last `window_s` passes `bound`.
+/// Returns the time from the first sample until the root mean square error over the last `window_s` exceeds
+/// `bound`.
 fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
     let Some(&first) = times_s.first() else { return 0.0 };
     let (mut sum, mut oldest) = (0.0, 0);
@@ -205,7 +210,7 @@ fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
             return (time - first - window_s).max(0.0);
         }
     }
-    // The first time is there, hence the last one.
+    // There is a first time, hence a last one.
     times_s.last().map_or(0.0, |last| last - first)
 }
 

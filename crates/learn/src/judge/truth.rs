@@ -1,4 +1,4 @@
-//! The truth of simulated records, which only the judge sees.
+//! Truth of simulated records, available to the judge only.
 
 use crate::data::{DataSet, local_states};
 use crate::learners::library::Term;
@@ -8,16 +8,16 @@ use dynamics::sensitivity::{FullState, Model as Motion, Settings};
 use dynamics::{Hold, Input, NominalSimulator, System};
 use nalgebra::{DMatrix, DVector};
 
-/// A coefficient beside its true value.
+/// Learned coefficient and its true value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoefficientError {
-    /// The term.
+    /// Name of the term.
     pub name: String,
     /// True value.
     pub truth: f64,
-    /// Learned value; 0 where the law has no such term.
+    /// Learned value; 0 if the law lacks the term.
     pub value: f64,
-    /// Distance in the stated standard errors, where they are stated.
+    /// Error divided by the stated standard error; `None` if none is stated.
     pub std_errors: Option<f64>,
 }
 
@@ -26,19 +26,20 @@ pub struct CoefficientError {
 pub struct Truth {
     places: Vec<Place>,
     accelerations: Vec<f64>,
-    /// What the nominal simulator lacks at each place; without one, the whole acceleration.
+    /// True minus nominal acceleration at each state; the whole true acceleration without a nominal
+    /// simulator.
     missing: Vec<f64>,
 }
 
-/// States that the truth is looked at.
+/// Number of states at which the truth is evaluated.
 const PLACES: usize = 400;
 
 impl Truth {
-    /// The acceleration of `system` at states visited by the test part; `None` where it is no function of the state
-    /// (hidden states, laws of time).
+    /// Computes the true accelerations of `system` at states visited by the test part; `None` if the
+    /// acceleration is not a function of the state (hidden states, laws that depend on time).
     ///
     /// # Errors
-    /// [`LearnError::Dynamics`] where the system cannot run.
+    /// [`LearnError::Dynamics`] if the system cannot run.
     pub fn new(system: &System, data: &DataSet) -> Result<Option<Self>, LearnError> {
         let of_time = ["stiffness_drift", "damping_drift", "periodic_forcing", "input_delay"];
         let is_of_time = system.effects().iter().any(|active| of_time.contains(&active.id()));
@@ -57,8 +58,8 @@ impl Truth {
         Ok(Some(Self { places, accelerations, missing }))
     }
 
-    /// Root mean square error of a model's torque over the root mean square of what the nominal simulator lacks;
-    /// `None` for a model without a torque.
+    /// Returns the root mean square error of a model's torque, divided by the root mean square of the torque
+    /// that the nominal simulator lacks; `None` for a model without a torque.
     #[must_use]
     pub fn torque_error(&self, model: &dyn Model) -> Option<f64> {
         let learned: Vec<f64> = self
@@ -72,7 +73,8 @@ impl Truth {
         Some((error / size).sqrt())
     }
 
-    /// Rows of position, velocity, input, true acceleration and learned acceleration with its standard deviation.
+    /// Returns one row per state: position, velocity, input, true acceleration, learned acceleration and its
+    /// standard deviation (NaN if the model states none).
     #[must_use]
     pub fn rows(&self, model: &dyn Model) -> Vec<[f64; 6]> {
         let row = |(place, truth): (&Place, &f64)| {
@@ -83,8 +85,8 @@ impl Truth {
         self.places.iter().zip(&self.accelerations).filter_map(row).collect()
     }
 
-    /// True coefficients of terms, by least squares on the true accelerations; `None` where the terms do not make them to
-    /// one part in a million.
+    /// Returns the true coefficients of terms, by least squares on the true accelerations; `None` if the
+    /// terms do not reproduce these to one part in a million.
     #[must_use]
     pub fn coefficients(&self, terms: &[Term]) -> Option<Vec<(Term, f64)>> {
         let rows: Vec<f64> =
@@ -96,7 +98,8 @@ impl Truth {
         (off < 1e-6).then(|| terms.iter().cloned().zip(weights.iter().copied()).collect())
     }
 
-    /// The learned coefficients beside the true ones, of every term that either has.
+    /// Compares learned and true coefficients, for every term that either law has. `None` if the model has no
+    /// coefficients, or if the true law is no sum of known terms.
     #[must_use]
     pub fn coefficient_errors(&self, model: &dyn Model) -> Option<Vec<CoefficientError>> {
         if model.coefficients().is_empty() {
@@ -113,7 +116,7 @@ impl Truth {
             if negligible && learned.is_none() {
                 return None;
             }
-            // A law without a term is one in which it weighs nothing.
+            // A law that lacks a term has a weight of zero for it.
             let value = learned.map_or(0.0, |own| own.value);
             let truth = if negligible { 0.0 } else { truth };
             let std_errors = learned.and_then(|own| own.std_error).map(|error| (value - truth) / error);
@@ -123,7 +126,7 @@ impl Truth {
     }
 }
 
-/// States of the test part, evenly chosen.
+/// Returns evenly chosen states of the test part.
 fn visited(data: &DataSet) -> Vec<Place> {
     let states: Vec<_> = data.test.iter().flat_map(|part| local_states(part, data.period_s / 8.0)).collect();
     let stride = (states.len() / PLACES).max(1);
@@ -136,7 +139,7 @@ fn visited(data: &DataSet) -> Vec<Place> {
     states.iter().step_by(stride).map(place).collect()
 }
 
-/// Acceleration of a system at places.
+/// Returns the acceleration of a system at states.
 fn accelerations(system: &System, places: &[Place]) -> Result<Vec<f64>, LearnError> {
     let settings = Settings { velocity: true, acceleration: true, ..Settings::default() };
     let mut model = Motion::new(system, &[], settings)?;
@@ -149,7 +152,7 @@ fn accelerations(system: &System, places: &[Place]) -> Result<Vec<f64>, LearnErr
     places.iter().map(at).collect()
 }
 
-/// Acceleration of a nominal simulator at places; what its measurement chain adds is no torque.
+/// Returns the acceleration of a nominal simulator at states; its measurement chain causes no torque.
 fn accelerations_of(nominal: &NominalSimulator, places: &[Place]) -> Result<Vec<f64>, LearnError> {
     accelerations(&crate::baselines::system_of(nominal)?, places)
 }

@@ -1,12 +1,13 @@
-//! A Gaussian process for the torque that the nominal simulator lacks.
+//! Gaussian process for the torque that the nominal simulator lacks.
 //!
-//! θ̈ = nominal + a·(linear terms + dry friction + f(θ, θ̇)), f a Gaussian process with a squared exponential kernel, in
-//! its reduced rank: eigenfunctions of the Laplacian on a box around the visited region, whose weights have the kernel's
-//! spectral density for prior variances. The posterior is Laplace's approximation about the trajectory fit; amplitude and
-//! length are those of largest evidence, by the linearized fit, in two rounds.
+//! θ̈ = nominal + a·(linear terms + dry friction + f(θ, θ̇)), where f is a Gaussian process with a squared
+//! exponential kernel in reduced rank: eigenfunctions of the Laplacian on a box around the visited region,
+//! whose weights have the kernel's spectral density as prior variances. The posterior is Laplace's
+//! approximation about the trajectory fit. The kernel's amplitude and length maximize the evidence of the
+//! linearized fit, in two rounds.
 //!
-//! Solin, Särkkä, Statistics and Computing 30 (2020) 419 (reduced rank); Rasmussen, Williams, Gaussian Processes for
-//! Machine Learning, MIT Press 2006, chapter 5 (evidence).
+//! Solin, Särkkä, Statistics and Computing 30 (2020) 419 (reduced rank); Rasmussen, Williams, Gaussian
+//! Processes for Machine Learning, MIT Press 2006, chapter 5 (evidence).
 
 use super::torque::{Base, Corrected, Correction, Progress, finished, fit, pretrained, restored};
 use crate::data::{DataSet, local_states};
@@ -21,7 +22,7 @@ use std::f64::consts::PI;
 /// Identifier.
 const ID: &str = "gaussian-process";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Gaussian-process torque",
@@ -77,7 +78,7 @@ const FIELDS: &[Key] = &[
     },
 ];
 
-/// The learner. Ranges and defaults stand in the registry's fields.
+/// The learner. Ranges and defaults are stated in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct GaussianProcess {
     functions: usize,
@@ -87,26 +88,26 @@ pub struct GaussianProcess {
     max_steps: u64,
 }
 
-/// Products of sines on a box, in scaled position and velocity.
+/// Basis of products of sines on a box, in scaled position and velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Basis {
     functions: usize,
-    /// Half widths of the box.
+    /// Half-widths of the box.
     half: [f64; 2],
 }
 
-/// Amplitude and length of the kernel, in scaled torque and states.
+/// Amplitude and length of the kernel, in scaled torque and scaled states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Kernel {
     amplitude: f64,
     length: f64,
 }
 
-/// Prior precision of the linear terms: as good as none.
+/// Prior precision of the linear terms; so small that the prior is nearly flat.
 const LOOSE: f64 = 1e-2;
 
 impl Basis {
-    /// √(1/L)·sin(π·j·(z + L)/(2L)) for every j from 1 on, each with its derivative.
+    /// Returns √(1/L)·sin(π·j·(z + L)/(2L)) for every j from 1, each with its derivative.
     fn along(&self, z: f64, half: f64) -> impl Iterator<Item = (f64, f64)> + Clone {
         let (rate, norm) = (0.5 * PI / half, half.sqrt().recip());
         let phase = rate * (z + half);
@@ -117,7 +118,7 @@ impl Basis {
         })
     }
 
-    /// Prior precisions of the weights: one over the spectral density at the eigenfrequencies.
+    /// Returns the prior precisions of the weights: the inverse spectral density at the eigenfrequencies.
     fn precisions(&self, kernel: Kernel) -> Vec<f64> {
         let [half_x, half_v] = self.half;
         let square = |number: usize, half: f64| (0.5 * PI * number as f64 / half).powi(2);
@@ -189,7 +190,8 @@ impl Learner for GaussianProcess {
 }
 
 impl GaussianProcess {
-    /// Half widths of a box around the states visited in training, in scaled position and velocity.
+    /// Returns the half-widths of a box around the states visited in training, in scaled position and
+    /// velocity.
     fn box_of(&self, data: &DataSet) -> [f64; 2] {
         let states = data.train.iter().flat_map(|part| local_states(part, data.period_s / 8.0));
         let scale = &data.scale;
@@ -207,12 +209,12 @@ fn penalty(base: &Base, basis: &Basis, kernel: Kernel) -> Penalty {
     Penalty { mean: vec![0.0; precision.len()], precision }
 }
 
-/// The kernel of largest evidence on a grid, with the fit linearized about its weights.
+/// Returns the kernel with the largest evidence on a grid, for the fit linearized about its weights.
 fn best_kernel(base: &Base, basis: &Basis, fit: &Fit, used: &Penalty) -> Option<Kernel> {
     let information = &fit.information / fit.variance();
     let weights = DVector::from_column_slice(&fit.weights);
     let prior = DVector::from_column_slice(&used.precision);
-    // At the penalized optimum the data's pull balances the prior's.
+    // At the penalized optimum, the gradient of the data term balances that of the prior.
     let pull = &information * &weights + prior.component_mul(&weights);
     let evidence = |kernel: Kernel| -> Option<f64> {
         let precision = DVector::from_vec(penalty(base, basis, kernel).precision);

@@ -1,10 +1,10 @@
-//! A long short-term memory network that corrects linear predictions.
+//! Long short-term memory network that corrects linear predictions.
 //!
-//! It reads the past sample by sample, then the inputs and linear predictions of the block, and states a correction after
-//! each of these.
+//! It reads the past sample by sample, then the inputs and linear predictions of the block, and outputs a
+//! correction for each sample of the block.
 //!
-//! Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735; Gers, Schmidhuber, Cummins, Neural Computation 12 (2000) 2451
-//! (forget gate).
+//! Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735; Gers, Schmidhuber, Cummins, Neural Computation
+//! 12 (2000) 2451 (forget gate).
 
 use crate::sequence::{
     Architecture, Batch, Network, Sizes, build, count, drawn, linear, restore, with_shared,
@@ -18,7 +18,7 @@ use seed::Seed;
 use serde::{Deserialize, Serialize};
 use settings::Field;
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: Lstm::ID,
     title: "LSTM on a linear prediction",
@@ -33,13 +33,13 @@ pub const ENTRY: Entry = Entry {
 const FIELDS: [Field; 12] =
     with_shared([count("units", [1, 4_096], 24, "Units of the hidden state, and of the cell.")]);
 
-/// The architecture's own settings.
+/// Settings of the architecture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lstm {
     units: usize,
 }
 
-/// One layer and a linear head. All four gates stand side by side: input, forget, output, cell.
+/// One LSTM layer and a linear head. The gates are concatenated in the order input, forget, output, cell.
 #[derive(Module, Debug)]
 pub struct Memory {
     from_input: Linear,
@@ -58,7 +58,7 @@ impl Architecture for Lstm {
             from_hidden: linear(units, 4 * units, device),
             head: linear(units, 1, device),
         };
-        // A forget gate that begins open remembers.
+        // With its forget gate open at the start, the network remembers.
         let forget = |at: usize| if (units..2 * units).contains(&at) { 1.0 } else { 0.0 };
         drawn(network, seed, device, |own| {
             (own.name == "from_input.bias").then(|| (0..4 * units).map(forget).collect())

@@ -1,4 +1,4 @@
-//! The learners there are, one line each; one method, one file.
+//! Registry of the learners; each method has one file.
 
 pub mod bayesian;
 pub mod gaussian_process;
@@ -16,7 +16,7 @@ pub mod weak_sindy;
 
 use crate::Entry;
 
-/// Every learner, in the order of tables.
+/// All learners, in the order of tables.
 pub static LEARNERS: &[Entry] = &[
     sindy::ENTRY,
     weak_sindy::ENTRY,
@@ -31,7 +31,7 @@ pub static LEARNERS: &[Entry] = &[
     state_space::ENTRY,
 ];
 
-/// The learner with an id.
+/// Returns the learner with an identifier; `None` if there is none.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static Entry> {
     LEARNERS.iter().find(|entry| entry.id == id)

@@ -1,12 +1,13 @@
-//! A neural ordinary differential equation: a network learns what the nominal simulator lacks.
+//! Neural ordinary differential equation: a network learns the torque that the nominal simulator lacks.
 //!
-//! θ̈ = nominal + a·(linear terms + dry friction + N(θ, θ̇, u)), N a network with one hidden layer of tanh units. It is
-//! trained through the integrator's own steps (discretize, then optimize) with exact forward sensitivities, by
-//! Levenberg–Marquardt on pieces that grow from two periods to whole parts: for tens of weights far fewer passes than a
-//! gradient method takes. A Gaussian prior keeps weights small; Laplace's approximation at the end gives bands.
+//! θ̈ = nominal + a·(linear terms + dry friction + N(θ, θ̇, u)), where N is a network with one hidden layer
+//! of tanh units. It is trained through the integrator's own steps (discretize, then optimize) with exact
+//! forward sensitivities, by Levenberg–Marquardt on pieces that grow from two periods to whole parts. For
+//! tens of weights this takes far fewer passes than a gradient method. A Gaussian prior keeps the weights
+//! small; Laplace's approximation at the optimum gives bands.
 //!
-//! Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 2018; Rackauckas et al., arXiv:2001.04385 (universal differential
-//! equations); MacKay, Neural Computation 4 (1992) 448 (Laplace's approximation).
+//! Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 2018; Rackauckas et al., arXiv:2001.04385 (universal
+//! differential equations); MacKay, Neural Computation 4 (1992) 448 (Laplace's approximation).
 
 use super::torque::{Base, Corrected, Correction, Progress, finished, fit, pretrained, restored};
 use crate::data::DataSet;
@@ -19,7 +20,7 @@ use settings::{Default, Field as Key, Kind as Value};
 /// Identifier.
 const ID: &str = "neural-ode";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Neural ordinary differential equation",
@@ -90,7 +91,7 @@ const FIELDS: &[Key] = &[
     },
 ];
 
-/// The learner. Ranges and defaults stand in the registry's fields.
+/// The learner. Ranges and defaults are stated in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct NeuralOde {
     hidden_units: usize,
@@ -102,13 +103,13 @@ pub struct NeuralOde {
     max_steps: u64,
 }
 
-/// A network of one hidden layer: for each unit three input weights, a bias and an output weight.
+/// Network with one hidden layer: each unit has three input weights, a bias and an output weight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Network {
     hidden: usize,
 }
 
-/// Weights of a hidden unit.
+/// Number of weights of a hidden unit.
 const OF_UNIT: usize = 5;
 
 impl Correction for Network {
@@ -151,7 +152,8 @@ impl Learner for NeuralOde {
 }
 
 impl NeuralOde {
-    /// The best of several pretrained networks; output weights begin at zero, where the model is the nominal simulator.
+    /// Returns the best of several pretrained networks. Output weights start at zero, so each network starts
+    /// as the nominal simulator.
     fn first_guess(
         &self,
         field: &Corrected<Network>,

@@ -1,11 +1,12 @@
-//! Sparse identification of the dynamics from states.
+//! Sparse identification of the dynamics from states (SINDy).
 //!
-//! Velocity and acceleration are read from local polynomials; the acceleration is regressed on a library of terms with
-//! sequential thresholding; an ensemble of resampled regressions says how sure each term is; the weights are refitted to
-//! trajectories, which removes the bias that noise in the regressors leaves.
+//! Velocity and acceleration are estimated by local polynomials. The acceleration is regressed on a library
+//! of terms with sequential thresholding. An ensemble of resampled regressions gives the inclusion share of
+//! each term. Finally the weights are refitted to trajectories, which removes the bias caused by noise in the
+//! regressors.
 //!
-//! Brunton, Proctor, Kutz, PNAS 113 (2016) 3932; Fasel, Kutz, Brunton, Brunton, Proceedings of the Royal Society A 478
-//! (2022) 20210904 (ensembles).
+//! Brunton, Proctor, Kutz, PNAS 113 (2016) 3932; Fasel, Kutz, Brunton, Brunton, Proceedings of the Royal
+//! Society A 478 (2022) 20210904 (ensembles).
 
 use super::library::{Finishing, Regression, Term, finish, inclusion, restore, thresholded};
 use crate::data::{DataSet, local_states};
@@ -19,7 +20,7 @@ use settings::{Default, Field, Kind as Value, Origin, Resolved, SettingsError};
 /// Identifier.
 const ID: &str = "sindy";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Sparse identification (SINDy)",
@@ -34,29 +35,29 @@ pub const ENTRY: Entry = Entry {
     restore: |stored| restore(ID, stored),
 };
 
-/// Settings that the sparse learners share. Ranges and defaults stand in the registry's fields.
+/// Settings shared by the sparse learners. Ranges and defaults are stated in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct SparseSettings {
-    /// Candidate terms by name.
+    /// Names of the candidate terms.
     pub library: Vec<String>,
-    /// Further candidates, expressions that can be read.
+    /// Further candidate terms, as expressions.
     pub terms: Vec<String>,
-    /// Contribution to the acceleration below which a term is left out, relative to the whole.
+    /// Contribution to the acceleration, relative to the whole, below which a term is left out.
     pub threshold: f64,
-    /// Members of the ensemble.
+    /// Number of members of the ensemble; 0 for none.
     pub members: usize,
-    /// Whether weights are refitted to trajectories.
+    /// `true` if weights are refitted to trajectories.
     pub refit: bool,
-    /// Most training samples of a refit.
+    /// Largest number of training samples used by a refit.
     pub refit_samples: usize,
-    /// Most steps of a refit.
+    /// Largest number of steps of a refit.
     pub max_steps: u64,
 }
 
 const PLAIN: Field =
     Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
-/// The keys that the sparse learners share.
+/// Keys shared by the sparse learners.
 pub(crate) const FIELDS: &[Field] = &[
     Field {
         key: "library",
@@ -125,15 +126,15 @@ pub(crate) const FIELDS: &[Field] = &[
 ];
 
 impl SparseSettings {
-    /// The settings of a learner's section.
+    /// Reads the settings from a learner's section.
     ///
     /// # Errors
-    /// [`SettingsError::UnknownName`] for a term that is not known.
+    /// [`SettingsError::UnknownName`] for an unknown term.
     pub(crate) fn read(resolved: &Resolved, section: &str) -> Result<Self, SettingsError> {
         Self::checked(resolved, section, resolved.section(section)?)
     }
 
-    /// As [`Self::read`], of a law whose terms are stated and not searched.
+    /// Reads the settings as [`Self::read`] does, for a law whose terms are stated rather than searched.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -173,8 +174,9 @@ impl SparseSettings {
         Ok(settings)
     }
 
-    /// The terms that the data can have: no input without one, no sine of a displacement, and no sine where the swings
-    /// are so small that a spring and its cube make the same.
+    /// Returns the terms that apply to the data: no input term without an input, no sine or cosine of a
+    /// displacement, and no sine if the swings are so small that a spring and its cubic term give the same
+    /// law.
     pub(crate) fn terms(&self, data: &DataSet) -> Vec<Term> {
         let has = |term: &Term| self.library.iter().any(|name| *name == term.name());
         let same = has(&Term::Position) && has(&Term::Cube) && sine_is_cubic(data);
@@ -193,7 +195,7 @@ impl SparseSettings {
         Finishing { refit: self.refit, samples: self.refit_samples, most_steps: self.max_steps }
     }
 
-    /// From a regression to a model.
+    /// Fits a model, starting from a regression.
     pub(crate) fn learn(
         &self,
         learner: &'static str,
@@ -211,10 +213,10 @@ impl SparseSettings {
     }
 }
 
-/// What is left of a sine without its part along θ and θ³, relative to it, below which it is no term of its own.
+/// Relative residual of a sine after θ and θ³ are fitted to it, below which the sine is no separate term.
 const SAME: f64 = 2e-4;
 
-/// Whether sin θ is a sum of θ and θ³ at the positions learned from.
+/// Returns `true` if sin θ is a sum of θ and θ³ at the training positions.
 fn sine_is_cubic(data: &DataSet) -> bool {
     let stride = (data.training_samples() / 1000).max(1);
     let positions: Vec<f64> =
@@ -229,7 +231,7 @@ fn sine_is_cubic(data: &DataSet) -> bool {
 /// The learner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sindy {
-    /// Its settings.
+    /// Settings.
     pub settings: SparseSettings,
 }
 
@@ -240,13 +242,13 @@ impl Learner for Sindy {
     }
 }
 
-/// Half width of the local polynomials, in periods: wide enough to average noise, narrow enough for degree 4.
+/// Half-width of the local polynomials, in periods: wide enough to average noise, narrow enough for degree 4.
 const HALF_WIDTH: f64 = 1.0 / 8.0;
 
-/// Rows that a regression has at most.
+/// Largest number of rows of a regression.
 const MOST_ROWS: usize = 20_000;
 
-/// The regression of local accelerations on terms. Groups are half periods.
+/// Builds the regression of local accelerations on terms. Groups are half periods.
 fn regression(data: &DataSet, terms: Vec<Term>) -> Regression {
     let stride = (data.training_samples() / MOST_ROWS).max(1);
     let (mut rows, mut right, mut groups, mut group) = (Vec::new(), Vec::new(), Vec::new(), 0);

@@ -1,11 +1,11 @@
 //! Diagonal state-space layers that correct linear predictions.
 //!
-//! Every channel has a linear state space of its own, diagonal with complex eigenvalues; its impulse response
-//! k(j) = Σ |λ|ʲ·(a·cos jω − b·sin jω) is convolved with the channel. A gated linear layer mixes the channels.
+//! Every channel has its own linear state space, diagonal with complex eigenvalues; its impulse response k(j)
+//! = Σ |λ|ʲ·(a·cos jω − b·sin jω) is convolved with the channel. A gated linear layer mixes the channels.
 //!
-//! Gu, Goel, Gupta, Ré, NeurIPS 35 (2022), "On the parameterization and initialization of diagonal state space models"
-//! (S4D: one diagonal system for each channel, applied as a convolution); Orvieto et al., ICML 2023 (LRU: eigenvalues
-//! exp(−exp ν + i·exp φ), normalization √(1 − |λ|²)).
+//! Gu, Goel, Gupta, Ré, NeurIPS 35 (2022), "On the parameterization and initialization of diagonal state
+//! space models" (S4D: one diagonal system for each channel, applied as a convolution); Orvieto et al., ICML
+//! 2023 (LRU: eigenvalues exp(−exp ν + i·exp φ), normalization √(1 − |λ|²)).
 
 use crate::sequence::{
     Architecture, Batch, Network, Sizes, build, count, drawn, linear, restore, with_shared,
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use settings::Field;
 use std::f64::consts::PI;
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: StateSpace::ID,
     title: "State-space layers on a linear prediction",
@@ -41,7 +41,7 @@ const FIELDS: [Field; 14] = with_shared([
     count("layers", [1, 64], 2, "Layers, one after the other."),
 ]);
 
-/// The architecture's own settings.
+/// Settings of the architecture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StateSpace {
     channels: usize,
@@ -49,7 +49,8 @@ pub struct StateSpace {
     layers: usize,
 }
 
-/// One layer: eigenvalues and output weights, channels × states each, a direct path, and a gated mixing.
+/// One layer: eigenvalues and output weights of shape channels × states each, a direct path, and gated
+/// mixing.
 #[derive(Module, Debug)]
 pub struct Layer {
     log_decay: Param<Tensor<2>>,
@@ -68,7 +69,7 @@ pub struct Layers {
     head: Linear,
 }
 
-/// Fastest decay and slowest of the first eigenvalues, per sample: moduli from 0.5 to 0.99.
+/// Fastest and slowest initial decay rate, per sample: moduli of the eigenvalues from 0.5 to 0.99.
 const DECAYS: [f64; 2] = [0.7, 0.01];
 
 impl Architecture for StateSpace {
@@ -95,8 +96,9 @@ impl Architecture for StateSpace {
 }
 
 impl StateSpace {
-    /// Start values of what is no matrix between layers: decays evenly spread in their logarithm, frequencies up to a
-    /// third of half the sampling rate, output weights normal.
+    /// Draws initial values of a layer's state-space parameters: decay rates uniform in their logarithm,
+    /// frequencies up to about a third of half the sampling rate, output weights normal. `None` for other
+    /// parameters.
     fn spread(&self, own: &NamedTensor, seed: &Seed) -> Option<Vec<f64>> {
         let mut generator = seed.child("state spaces").child(&own.name).generator();
         let count = own.values.len();
@@ -118,7 +120,7 @@ impl StateSpace {
 }
 
 impl Layer {
-    /// Impulse responses, channels × length.
+    /// Returns the impulse responses, channels × length.
     fn responses(&self, length: usize, device: &Device) -> Tensor<2> {
         let steps: Vec<f64> = (0..length).map(|step| step as f64).collect();
         let steps = Tensor::<3>::from_data(TensorData::new(steps, [1, 1, length]), device);
@@ -131,13 +133,13 @@ impl Layer {
         (falling * turning).sum_dim(1).squeeze_dim::<2>(1)
     }
 
-    /// Convolution along the samples: each channel times the triangular matrix of its response.
+    /// Convolves along the samples: each channel times the triangular matrix of its impulse response.
     fn convolved(&self, samples: &Tensor<3>) -> Tensor<3> {
         let [_, length, channels] = samples.dims();
         let device = samples.device();
         let padded =
             Tensor::cat(vec![self.responses(length, &device), Tensor::zeros([channels, 1], &device)], 1);
-        // Entry (from, to) is the response after to − from samples, and nothing where that is negative.
+        // Entry (from, to) is the response after to − from samples, and zero for negative lags.
         let lags = (0..length)
             .flat_map(|from| (0..length).map(move |to| to.checked_sub(from).unwrap_or(length) as i64));
         let lags = Tensor::<1, Int>::from_data(

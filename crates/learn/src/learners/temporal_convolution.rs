@@ -1,9 +1,10 @@
 //! Causal dilated convolutions that correct linear predictions.
 //!
-//! Each layer sees three samples, twice as far apart as those of the layer before, and adds what it makes of them.
+//! Each layer reads three samples, spaced twice as far apart as in the previous layer, and adds its result to
+//! its input.
 //!
-//! Bai, Kolter, Koltun, arXiv:1803.01271 (2018); Andersson, Ribeiro, Tiels, Wahlström, Schön, CDC 2019 (system
-//! identification).
+//! Bai, Kolter, Koltun, arXiv:1803.01271 (2018); Andersson, Ribeiro, Tiels, Wahlström, Schön, CDC 2019
+//! (system identification).
 
 use crate::sequence::{
     Architecture, Batch, Network, Sizes, build, count, drawn, linear, restore, with_shared,
@@ -16,7 +17,7 @@ use seed::Seed;
 use serde::{Deserialize, Serialize};
 use settings::Field;
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: TemporalConvolution::ID,
     title: "Temporal convolution on a linear prediction",
@@ -38,17 +39,17 @@ const FIELDS: [Field; 13] = with_shared([
     ),
 ]);
 
-/// The architecture's own settings.
+/// Settings of the architecture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TemporalConvolution {
     channels: usize,
     layers: usize,
 }
 
-/// Samples that a layer sees.
+/// Number of samples that a layer reads.
 const TAPS: usize = 3;
 
-/// Layers of three taps each, and a linear head.
+/// Layers with three taps each, and a linear head.
 #[derive(Module, Debug)]
 pub struct Convolutions {
     embedding: Linear,
@@ -71,7 +72,7 @@ impl Architecture for TemporalConvolution {
     }
 }
 
-/// The same samples `by` places later, zeros before them.
+/// Delays samples by `by` places and fills the start with zeros.
 fn delayed(samples: &Tensor<3>, by: usize) -> Tensor<3> {
     let [windows, length, channels] = samples.dims();
     let by = by.min(length);

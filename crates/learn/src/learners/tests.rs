@@ -1,4 +1,4 @@
-//! What each learner reaches on simulated systems whose law is known.
+//! Accuracy of each learner on simulated systems whose law is known.
 
 use super::library::Term;
 use crate::baselines::{exact, recalibrated};
@@ -7,8 +7,8 @@ use crate::judge::{Truth, runs, score};
 use crate::testing::{context, data_set, drag_and_cubic, friction_and_gravity, learner};
 use dynamics::System;
 
-/// Root mean square over terms of error over the exact fit's standard error is not defined for terms that the exact fit
-/// has in other words, so free runs and true weights are compared.
+/// Errors cannot be divided by the exact fit's standard errors for terms that the exact fit expresses
+/// differently, so free runs and true weights are compared.
 #[test]
 fn sindy_finds_friction_and_gravity() {
     let system = friction_and_gravity();
@@ -47,7 +47,7 @@ fn sindy_finds_drag_and_a_stiffening_spring_under_an_input() {
     assert!(scores.free_run_rmse < 1.05 * ceiling.free_run_rmse, "{scores:?} {ceiling:?}");
 }
 
-/// The sine that the law needs stands in the user's terms only, beside one that it does not need.
+/// The law needs a sine, which only the user's terms contain, beside a term that it does not need.
 #[test]
 fn sindy_takes_the_users_own_terms() {
     let system = friction_and_gravity();
@@ -89,7 +89,7 @@ fn the_true_coefficients_are_those_of_the_law() {
     assert!((of(Term::Cube).unwrap() + 30.0).abs() < 1e-3 && (of(Term::Drag).unwrap() + 0.2).abs() < 1e-6);
 }
 
-/// What a learner makes of systems whose nominal oscillator is known; the torque is judged where the test records go.
+/// Checks a learner's torque on systems whose nominal oscillator is known, at the states of the test records.
 fn torque_within_five_percent(id: &str, overrides: &[&str], systems: usize) {
     let free = friction_and_gravity();
     let driven = drag_and_cubic();
@@ -116,7 +116,7 @@ fn a_gaussian_process_learns_the_torque_within_five_percent() {
     torque_within_five_percent("gaussian-process", &["samples=1500"], 2);
 }
 
-/// The posterior is nearly normal here, so that Laplace's approximation of the exact fit is its check.
+/// The posterior is nearly normal here, so Laplace's approximation of the exact fit can check it.
 #[test]
 fn a_posterior_has_the_exact_fits_center_and_width() {
     let system = friction_and_gravity();
@@ -124,7 +124,7 @@ fn a_posterior_has_the_exact_fits_center_and_width() {
     let law = r#"library=["theta","theta_dot","sign(theta_dot)","sin(theta)"]"#;
     let fitted = learner("bayesian", &[law, "warm_up=30", "draws=120"]).fit(&data, &context()).unwrap();
     let best = exact(&system, &data, &context()).unwrap();
-    // In the order of the library; the exact fit has damping, stiffness, friction, weight.
+    // In the order of the library; the exact fit has damping, stiffness, friction and gravity.
     let of = |name: &str| best.model.coefficients().iter().find(|own| own.name == name).unwrap().clone();
     let names = ["stiffness", "damping", "coulomb_friction.torque", "gravity.torque"];
     for (own, expected) in fitted.model.coefficients().iter().zip(names.map(of)) {
@@ -169,7 +169,7 @@ fn symbolic_regression_finds_a_law_that_predicts() {
     assert!(error < 0.02, "{error} {:?}", fitted.model.equation());
 }
 
-/// What the training does is in the weights: without a step they are the nominal simulator's.
+/// All that training learns is in the weights: without a step, the model is the nominal simulator.
 #[test]
 fn an_untrained_network_is_the_nominal_simulator() {
     let system = friction_and_gravity();
@@ -203,12 +203,13 @@ fn the_same_seed_gives_the_same_bits() {
     }
 }
 
-/// Samples before a change of the input that a prediction may already show it in: models that predict on a grid of their own see the
-/// input between samples of this grid, of which there are 16 in a period.
+/// Number of samples before a change of the input at which a prediction may already respond: models that
+/// predict on a grid of their own read the input between the samples of this grid, which has 16 samples per
+/// period.
 const BETWEEN: usize = 7;
 
-/// An input that changes late in the test part, at several places of the blocks that sequence models predict at once, changes nothing
-/// that was predicted before.
+/// A change of the input late in the test part, at several places within the blocks of sequence models, must
+/// not change any earlier prediction.
 #[test]
 fn no_model_looks_ahead() {
     let system = drag_and_cubic();
@@ -230,7 +231,7 @@ fn no_model_looks_ahead() {
             let changed =
                 crate::data::DataSet { test: data.test.iter().map(other).collect(), ..data.clone() };
             for ((own, before), part) in predicted(&changed).iter().zip(&before).zip(&data.test) {
-                // Predictions begin where the warm-up ends.
+                // Predictions start at the end of the warm-up.
                 let at = from - (part.len() - before.len());
                 let same = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
                 assert!(own.iter().zip(before).take(at - BETWEEN).all(same), "{} from {from}", entry.id);
@@ -241,7 +242,7 @@ fn no_model_looks_ahead() {
     }
 }
 
-/// Settings that make a learner quick, by what it can be set to.
+/// Settings that make a learner quick, chosen by the keys it has.
 fn quick(entry: &crate::Entry) -> &'static [&'static str] {
     let has = |key: &str| entry.fields.iter().any(|field| field.key == key);
     if has("refit") {
@@ -259,7 +260,7 @@ fn quick(entry: &crate::Entry) -> &'static [&'static str] {
     }
 }
 
-/// A meter has no sine, and a small swing none that its cube does not make.
+/// A displacement has no sine, and a small swing has none that its cubic term does not reproduce.
 #[test]
 fn a_sine_is_a_term_only_where_it_can_be_told() {
     let system = friction_and_gravity();

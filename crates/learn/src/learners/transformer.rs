@@ -1,6 +1,7 @@
-//! A transformer that corrects linear predictions.
+//! Transformer that corrects linear predictions.
 //!
-//! Every sample of past and block attends to those before it; corrections are read from the samples of the block.
+//! Every sample of past and block attends to itself and to earlier samples; corrections are read from the
+//! samples of the block.
 //!
 //! Vaswani et al., NeurIPS 30 (2017); Xiong et al., ICML 2020 (norms before the layers).
 
@@ -17,7 +18,7 @@ use seed::Seed;
 use serde::{Deserialize, Serialize};
 use settings::Field;
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: Transformer::ID,
     title: "Transformer on a linear prediction",
@@ -40,7 +41,7 @@ const FIELDS: [Field; 14] = with_shared([
     ),
 ]);
 
-/// The architecture's own settings.
+/// Settings of the architecture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Transformer {
     layers: usize,
@@ -48,7 +49,7 @@ pub struct Transformer {
     head_width: usize,
 }
 
-/// burn's encoder on embedded samples with a learned vector for each place, and a linear head.
+/// burn's encoder on embedded samples with a learned position vector, and a linear head.
 #[derive(Module, Debug)]
 pub struct Attention {
     embedding: Linear,
@@ -83,7 +84,7 @@ impl Network for Attention {
         let [windows, length, _] = tokens.dims();
         let device = tokens.device();
         let described = self.embedding.forward(tokens) + self.places.val().unsqueeze_dim::<3>(0);
-        // True where attention is not paid: to what comes later.
+        // The mask is true where attention is blocked: at later samples.
         let later = Tensor::<2, Bool>::tril_mask([length, length], 0, &device).unsqueeze_dim::<3>(0);
         let later = later.repeat_dim(0, windows);
         let read = self.encoder.forward(TransformerEncoderInput::new(described).mask_attn(later));

@@ -1,8 +1,9 @@
 //! Sparse identification in weak form.
 //!
-//! Both sides of θ̈ = Σ wᵢ·fᵢ are integrated against test functions that vanish with their derivatives at the ends of a
-//! window, and the derivatives are moved over to them: ∫φ̈·θ = Σ wᵢ·∫φ·fᵢ, ∫φ·θ̇ = −∫φ̇·θ. No observation is
-//! differentiated; a velocity is read from local polynomials only where a term is not linear in it.
+//! Both sides of θ̈ = Σ wᵢ·fᵢ are integrated against test functions that vanish, with their derivatives, at
+//! the ends of a window. Integration by parts moves the derivatives to the test functions: ∫φ̈·θ = Σ
+//! wᵢ·∫φ·fᵢ, ∫φ·θ̇ = −∫φ̇·θ. No observation is differentiated; a velocity is estimated by local polynomials
+//! only for terms that are not linear in it.
 //!
 //! Messenger, Bortz, Multiscale Modeling and Simulation 19 (2021) 1474.
 
@@ -16,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 /// Identifier.
 const ID: &str = "weak-sindy";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Weak-form sparse identification",
@@ -33,7 +34,7 @@ pub const ENTRY: Entry = Entry {
 /// The learner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeakSindy {
-    /// Its settings.
+    /// Settings.
     pub settings: SparseSettings,
 }
 
@@ -44,13 +45,14 @@ impl Learner for WeakSindy {
     }
 }
 
-/// Windows that a regression has at most.
+/// Largest number of windows of a regression.
 const MOST_WINDOWS: usize = 4_000;
 
-/// Exponent of the test functions (1 − s²)⁴: smooth enough that sums over samples are integrals.
+/// Exponent of the test functions (1 − s²)⁴: smooth enough that sums over samples approximate integrals.
 pub(super) const EXPONENT: i32 = 4;
 
-/// The regression in weak form: a row for each window of one period, every eighth of a period; groups are periods.
+/// Builds the regression in weak form: one row per window of one period, with windows at least an eighth of a
+/// period apart; groups are periods.
 pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
     let whole: f64 = data.train.iter().map(Trajectory::duration_s).sum();
     let step = (whole / MOST_WINDOWS as f64).max(data.period_s / 8.0);
@@ -64,7 +66,7 @@ pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
             let center = first.time_s + half + window as f64 * step;
             let from = states.partition_point(|state| state.time_s < center - half);
             let to = states.partition_point(|state| state.time_s <= center + half);
-            // Both places were found among the states.
+            // Both indices were found among the states.
             let inside = states.get(from..to).unwrap_or_default();
             let (row, sum) = weak_row(part, inside, center, half, terms);
             rows.extend(row);
@@ -81,7 +83,8 @@ pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
     }
 }
 
-/// Integrals of the terms and of the acceleration over one window, by the trapezoidal rule on the samples.
+/// Returns the integrals of the terms and of the acceleration over one window, by the trapezoidal rule on the
+/// samples.
 fn weak_row(
     part: &Trajectory,
     inside: &[LocalState],

@@ -1,66 +1,70 @@
 //! Calibrated 95 % bands of free runs.
 //!
-//! A free run's error grows with the time since its start, and in proportion to the swing. So errors are taken relative to
-//! the local amplitude of the prediction, in bins of lead time, from free runs over the validation records. Errors of one
-//! record go together, so what is exchangeable with the next one are whole records: every record weighs the same, and
-//! one more weighs as much at infinity. From twenty records on the 95 % quantile of that is finite, and a band then holds 95 % of
-//! the observations of a record more, whatever the distribution of errors. From fewer it is the pooled quantile, raised
-//! by the upper 95 % limit of a mean of logarithms, with a spread between records that is pooled over the bins; one record, which cannot
-//! tell how records differ, goes by the stated [`ONE_RECORD`]. Lead times beyond all that validation has seen continue in
-//! proportion to the lead, as an error of phase does.
+//! A free run's error grows with the lead time and is proportional to the amplitude of the swing. Errors are
+//! therefore divided by the local amplitude of the prediction and binned by lead time, over free runs on the
+//! validation records. Errors within one record are correlated, so whole records are taken as exchangeable
+//! with the next record: every record has the same weight, and one further record has this weight at
+//! infinity. With twenty or more records, the 95 % quantile of this distribution is finite, and a band holds
+//! 95 % of the observations of a new record, whatever the distribution of the errors. With fewer records, the
+//! pooled quantile is used, raised by the upper 95 % limit of a mean of logarithms; the spread between
+//! records is pooled over the bins. A single record cannot show how records differ, so the stated
+//! [`ONE_RECORD`] is used. Beyond the longest lead time of the validation records, the half-width grows in
+//! proportion to the lead time, as a phase error does.
 //!
-//! Lei, G'Sell, Rinaldo, Tibshirani, Wasserman, J. Am. Stat. Assoc. 113 (2018) 1094, section 2.2 and 5.2 (split conformal,
-//! locally weighted); Lee, Barber, Willett, arXiv:2306.06342 (2023) (records of dependent scores, one more at infinity);
-//! Stankevičiūtė, Alaa, van der Schaar, NeurIPS 34 (2021) 6216 (quantiles by horizon).
+//! Lei, G'Sell, Rinaldo, Tibshirani, Wasserman, J. Am. Stat. Assoc. 113 (2018) 1094, section 2.2 and 5.2
+//! (split conformal, locally weighted); Lee, Barber, Willett, arXiv:2306.06342 (2023) (records of dependent
+//! scores, one more at infinity); Stankevičiūtė, Alaa, van der Schaar, NeurIPS 34 (2021) 6216 (quantiles by
+//! horizon).
 
 use serde::{Deserialize, Serialize};
 
-/// A free run over a validation record.
+/// Free run over a validation record.
 pub(super) struct Calibration {
-    /// Number of the record.
+    /// Index of the record.
     pub(super) record: usize,
-    /// Times since the start of the run, in seconds.
+    /// Lead times, counted from the start of the run, in seconds.
     pub(super) leads_s: Vec<f64>,
     /// Predicted positions.
     pub(super) predicted: Vec<f64>,
-    /// What was observed.
+    /// Observed positions.
     pub(super) observed: Vec<f64>,
 }
 
-/// Half widths of 95 % bands by lead time, relative to the local amplitude.
+/// Half-widths of 95 % bands by lead time, relative to the local amplitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Band {
-    /// Middles of the bins of lead time, in seconds, increasing.
+    /// Centers of the bins of lead time, in seconds, increasing.
     leads_s: Vec<f64>,
-    /// 95 % half width over the local amplitude in each bin.
+    /// 95 % half-width divided by the local amplitude, for each bin.
     relative: Vec<f64>,
-    /// Added to the local amplitude: the sensor's noise, in the position's unit.
+    /// Sensor noise, added to the local amplitude, in the unit of the positions.
     floor: f64,
-    /// Rest position that amplitudes are counted from.
+    /// Rest position from which amplitudes are measured.
     center: f64,
-    /// Time over which an amplitude is local, in seconds.
+    /// Length of the window of the local amplitude, in seconds.
     window_s: f64,
 }
 
-/// Share of observations that a band is to hold.
+/// Nominal coverage of a band.
 const LEVEL: f64 = 0.95;
 
-/// Quantiles of the standard normal distribution: that of a one-sided 95 % limit, and that of a 95 % interval.
+/// Quantiles of the standard normal distribution for a one-sided 95 % limit and for a 95 % interval.
 const ONE_SIDED: f64 = 1.645;
 const TWO_SIDED: f64 = 1.96;
 
-/// Spread of the logarithm of records' quantiles where there is one record: they differ by a factor of 1.5.
+/// Assumed spread of the logarithm of the records' quantiles if there is only one record: they differ by a
+/// factor of 1.5.
 const ONE_RECORD: f64 = 0.4;
 
-/// Most bins of lead time, and fewest errors in a bin of each record.
+/// Largest number of bins of lead time, and smallest number of errors of each record in a bin.
 const MOST_BINS: usize = 12;
 const LEAST_ERRORS: usize = 20;
 
-/// No prediction is farther off than the sum of two opposite swings.
+/// Largest relative half-width: two opposite swings differ by twice the amplitude.
 const LARGEST: f64 = 2.0;
 
 impl Band {
-    /// A band from free runs over validation records; `None` where they leave nothing to calibrate on.
+    /// Calibrates a band on free runs over validation records; `None` if these leave nothing to calibrate on.
     pub(super) fn calibrated(runs: &[Calibration], center: f64, floor: f64, period_s: f64) -> Option<Self> {
         let mut band = Self { leads_s: Vec::new(), relative: Vec::new(), floor, center, window_s: period_s };
         let records = runs.iter().map(|run| run.record).max()? + 1;
@@ -93,14 +97,15 @@ impl Band {
         (!band.leads_s.is_empty()).then_some(band)
     }
 
-    /// Standard deviations whose 1.96 fold are the half widths, one for each prediction.
+    /// Returns one standard deviation per prediction; 1.96 times it is the half-width of the band.
     pub(super) fn std(&self, leads_s: &[f64], predicted: &[f64]) -> Vec<f64> {
         let amplitudes = self.amplitudes(leads_s, predicted);
         let pairs = leads_s.iter().zip(amplitudes);
         pairs.map(|(lead, amplitude)| self.relative_at(*lead) * amplitude / TWO_SIDED).collect()
     }
 
-    /// The largest relative half width at a lead time: between bins in proportion, beyond the last in proportion to the lead.
+    /// Returns the relative half-width at a lead time: interpolated linearly between bins, proportional to
+    /// the lead time beyond the last bin.
     fn relative_at(&self, lead_s: f64) -> f64 {
         let next = self.leads_s.partition_point(|&own| own < lead_s);
         let at = |place: usize| self.leads_s.get(place).copied().zip(self.relative.get(place).copied());
@@ -110,11 +115,11 @@ impl Band {
             (None, Some((_, first))) => first,
             (None, None) => LARGEST,
         };
-        // Where noise is all there is, a band may be wider than a swing.
+        // If the motion is mostly noise, a band may be wider than a swing.
         found.min(LARGEST.max(self.relative.iter().copied().fold(0.0, f64::max)))
     }
 
-    /// Record, lead time and relative error of every sample of a run.
+    /// Returns record, lead time and relative error of every sample of a run.
     fn scores(&self, run: &Calibration) -> Vec<(usize, f64, f64)> {
         let amplitudes = self.amplitudes(&run.leads_s, &run.predicted);
         let errors = run.observed.iter().zip(&run.predicted).map(|(a, b)| (a - b).abs());
@@ -123,12 +128,12 @@ impl Band {
         scored.map(|(lead, score)| (run.record, *lead, score)).collect()
     }
 
-    /// Local amplitude of a prediction at every time: √2 times the root mean square within half a window on either side, and
-    /// the floor.
+    /// Returns the local amplitude of a prediction at every time: √2 times the root mean square within half a
+    /// window on either side, plus the floor.
     fn amplitudes(&self, leads_s: &[f64], predicted: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0];
         for value in predicted {
-            // The list begins with a number.
+            // The list starts with a number.
             sums.push(sums.last().copied().unwrap_or_default() + (value - self.center).powi(2));
         }
         let amplitude = |lead: &f64| {
@@ -141,8 +146,8 @@ impl Band {
     }
 }
 
-/// The least score that a share of the scores does not exceed, every record weighing the same; `None` of nothing, and where
-/// the share is more than all.
+/// Returns the smallest score that is not exceeded by a share of the scores, with equal weight for every
+/// record. `None` without scores, or if the share is above 1.
 fn quantile(records: &[Vec<f64>], share: f64) -> Option<f64> {
     let weighted = |own: &Vec<f64>| {
         let weight = 1.0 / (own.len() * records.len()) as f64;
@@ -151,7 +156,7 @@ fn quantile(records: &[Vec<f64>], share: f64) -> Option<f64> {
     let mut all: Vec<(f64, f64)> = records.iter().flat_map(weighted).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut sum = 0.0;
-    // Weights add up to 1 but for rounding.
+    // Weights sum to 1 up to rounding.
     all.into_iter()
         .find(|(_, weight)| {
             sum += weight;
@@ -160,8 +165,8 @@ fn quantile(records: &[Vec<f64>], share: f64) -> Option<f64> {
         .map(|(score, _)| score)
 }
 
-/// Standard deviation of the logarithms of records' own quantiles about their bins' means, pooled over bins; `None` where no
-/// bin has two records.
+/// Returns the standard deviation of the logarithms of the records' own quantiles about the means of their
+/// bins, pooled over bins; `None` if no bin has two records.
 fn spread(bins: &[Vec<Vec<f64>>]) -> Option<f64> {
     let (mut squares, mut degrees) = (0.0, 0_usize);
     for records in bins {
@@ -183,7 +188,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
     use seed::Seed;
 
-    /// A decaying swing, predicted with an error of phase that differs from record to record.
+    /// Builds a decaying swing, predicted with a phase error that differs between records.
     fn run(record: usize, seconds: f64, seed: &Seed) -> Calibration {
         let mut generator = seed.child(&record.to_string()).generator();
         let mut normal = || -> f64 { StandardNormal.sample(&mut generator) };
@@ -206,7 +211,7 @@ mod tests {
         held as f64 / count as f64
     }
 
-    /// Mean coverage of fresh records by bands from so many, over 40 draws of these.
+    /// Returns the mean coverage of fresh records by bands calibrated on a number of records, over 40 draws.
     fn mean_coverage(records: usize) -> f64 {
         let of_draw = |draw: u64| {
             let seed = Seed::new(draw);

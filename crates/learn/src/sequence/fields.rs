@@ -1,4 +1,4 @@
-//! Settings that every sequence model has.
+//! Settings shared by all sequence models.
 
 use neural::{DeviceKind, Precision};
 use serde::Deserialize;
@@ -7,30 +7,30 @@ use settings::{Default, Field, Kind as Value};
 const OWN: Field =
     Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
-/// Settings of the training and of the windows. Ranges and defaults stand in the fields below.
+/// Settings of the training and of the windows. Ranges and defaults are stated in the fields below.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Settings {
-    /// Most samples of a period.
+    /// Largest number of samples per period.
     pub samples_per_period: usize,
     /// Length of a block in periods.
     pub block_periods: f64,
-    /// Blocks of a free run in training.
+    /// Number of blocks in a free run during training.
     pub blocks: usize,
-    /// Most windows of an epoch.
+    /// Largest number of windows in an epoch.
     pub windows: usize,
-    /// Most epochs.
+    /// Largest number of epochs.
     pub epochs: u64,
-    /// Windows of a batch.
+    /// Number of windows in a batch.
     pub batch: usize,
     /// Largest learning rate.
     pub learning_rate: f64,
-    /// Decay of the weights.
+    /// Weight decay per step, divided by the learning rate.
     pub weight_decay: f64,
-    /// Epochs without a better validation before training ends.
+    /// Number of epochs without a better validation error after which training stops.
     pub patience: u64,
-    /// Device that trains.
+    /// Device for training.
     pub device: DeviceKind,
-    /// Precision that it computes in.
+    /// Floating-point precision of the device.
     pub precision: Precision,
 }
 
@@ -118,13 +118,13 @@ const SHARED: [Field; 11] = [
     },
 ];
 
-/// A key that counts something: its range, its default, its meaning.
+/// Declares a key for a count: range, default and meaning.
 #[must_use]
 pub const fn count(key: &'static str, [min, max]: [i64; 2], default: i64, meaning: &'static str) -> Field {
     Field { key, kind: Value::Integer { min, max }, default: Default::Integer(default), meaning, ..OWN }
 }
 
-/// An architecture's own keys with those that every sequence model has; `ALL` is eleven more than `N`.
+/// Joins an architecture's own keys with the shared ones; `ALL` must be eleven more than `N`.
 #[must_use]
 pub const fn with_shared<const N: usize, const ALL: usize>(own: [Field; N]) -> [Field; ALL] {
     let mut all = [OWN; ALL];

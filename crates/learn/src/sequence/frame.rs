@@ -1,4 +1,4 @@
-//! Units, times and the linear prediction that a sequence model corrects.
+//! Units, sample times and the linear prediction that a sequence model corrects.
 
 use super::Settings;
 use super::grid::evened;
@@ -10,44 +10,45 @@ use dynamics::Hold;
 use neural::tensor;
 use serde::{Deserialize, Serialize};
 
-/// Most samples of a past.
+/// Largest number of samples in a past.
 const MOST_PAST: usize = 96;
 
-/// Fewest samples of a past, and of a block.
+/// Smallest number of samples in a past, and in a block.
 const LEAST: usize = 8;
 
-/// Share of the position's spread that counts as the least typical error of the linear prediction.
+/// Lower limit of the linear prediction's typical error, as a share of the spread of positions.
 const LEAST_MISS: f64 = 1e-3;
 
-/// Ridges that the linear prediction is fitted with, as shares of the regressors' mean squares.
+/// Ridges tried for the linear prediction, as shares of the regressors' mean squares.
 const RIDGES: [f64; 3] = [1e-8, 1e-6, 1e-4];
 
-/// All that a sequence model takes from the training part besides its weights.
+/// Everything that a sequence model takes from the training part besides its weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// Time between a model's samples, in seconds.
+    /// Time between the model's samples, in seconds.
     pub interval_s: f64,
-    /// Samples of the past.
+    /// Number of samples in the past.
     pub past: usize,
-    /// Samples that are predicted at once.
+    /// Number of samples predicted at once.
     pub block: usize,
-    /// True where there is an input.
+    /// `true` if there is an input.
     pub driven: bool,
-    /// Behavior of inputs between samples.
+    /// Interpolation of the input between samples.
     pub hold: Hold,
     /// Scales of the training part.
     pub scale: Scale,
-    /// The linear prediction of a block in scaled units, row-major: past positions by block.
+    /// Linear prediction of a block from past positions, in scaled units; row-major, past × block.
     from_positions: Vec<f64>,
-    /// Inputs of past and block by block; empty without an input.
+    /// Linear prediction of a block from the inputs of past and block; row-major, (past + block) × block.
+    /// Empty without an input.
     from_inputs: Vec<f64>,
-    /// One for each sample of a block.
+    /// Constant of the linear prediction, one per sample of a block.
     constant: Vec<f64>,
     /// Typical error of the linear prediction for each sample of a block, in scaled units.
     miss: Vec<f64>,
 }
 
-/// A training part in a frame's units and times.
+/// Training and validation part in a frame's units and sample times.
 pub(super) struct Framed {
     pub(super) frame: Frame,
     pub(super) train: Vec<Trajectory>,
@@ -55,7 +56,7 @@ pub(super) struct Framed {
 }
 
 impl Framed {
-    /// Scales and evens out training and validation part, and fits the linear prediction.
+    /// Scales and resamples the training and validation part, and fits the linear prediction.
     pub(super) fn new(data: &DataSet, settings: &Settings) -> Result<Self, LearnError> {
         let rates: Vec<f64> = data.train.iter().map(Trajectory::rate_hz).collect();
         let own_s = rates.len() as f64 / rates.iter().sum::<f64>().max(f64::MIN_POSITIVE);
@@ -96,32 +97,32 @@ impl Framed {
 }
 
 impl Frame {
-    /// Numbers that describe a sample: its position, observed or linearly predicted, the input where there is one, and
-    /// whether it lies ahead.
+    /// Returns the number of features of a sample: its position (observed or linearly predicted), the input
+    /// if there is one, and a flag for samples of the block.
     #[must_use]
     pub fn features(&self) -> usize {
         2 + usize::from(self.driven)
     }
 
-    /// Samples of past and block.
+    /// Returns the number of samples of past and block together.
     #[must_use]
     pub fn length(&self) -> usize {
         self.past + self.block
     }
 
-    /// A position in scaled units.
+    /// Converts a position to scaled units.
     #[must_use]
     pub fn position_in(&self, position: f64) -> f64 {
         (position - self.scale.center) / self.scale.position
     }
 
-    /// A position in its own unit.
+    /// Converts a scaled position back to its own unit.
     #[must_use]
     pub fn position_out(&self, scaled: f64) -> f64 {
         self.scale.center + self.scale.position * scaled
     }
 
-    /// An input in scaled units.
+    /// Converts an input to scaled units.
     #[must_use]
     pub fn input_in(&self, input: f64) -> f64 {
         (input - self.scale.input_center) / self.scale.input
@@ -133,7 +134,8 @@ impl Frame {
         Trajectory::new(part.name(), part.times_s().to_vec(), values, input)
     }
 
-    /// The autoregression's free run over a block is linear in past and inputs: column by column from unit vectors.
+    /// Computes the matrices of the autoregression's free run over a block, which is linear in past and
+    /// inputs, column by column from unit vectors.
     fn linearize(&mut self, model: &Arx) -> Result<(), LearnError> {
         let times: Vec<f64> = (0..self.length()).map(|at| at as f64).collect();
         let (before, after) = times.split_at(self.past);
@@ -161,7 +163,8 @@ impl Frame {
         Ok(())
     }
 
-    /// Root mean square error of the linear prediction over training windows, for each sample of a block.
+    /// Computes the root mean square error of the linear prediction over training windows, for each sample of
+    /// a block.
     fn measure(&mut self, train: &[Trajectory]) {
         let (mut squares, mut count) = (vec![0.0; self.block], 0_usize);
         for part in train {
@@ -172,7 +175,7 @@ impl Frame {
                 // As above.
                 let ahead = part.values().get(from + self.past..from + self.length()).unwrap_or_default();
                 let inputs = part.input().and_then(|input| input.get(from..from + self.length()));
-                // Without an input there is no weight for one.
+                // Without an input, no weight reads it.
                 let predicted = self.linear(positions, inputs.unwrap_or_default());
                 for ((square, own), observed) in squares.iter_mut().zip(predicted).zip(ahead) {
                     *square += (own - observed).powi(2);
@@ -193,7 +196,7 @@ impl Frame {
         predicted
     }
 
-    /// The parts of a frame that tensors are multiplied with, on a device.
+    /// Copies a frame's matrices to a device.
     pub(super) fn on(&self, device: &Device) -> OnDevice {
         let matrix = |values: &[f64], rows: usize| tensor(values.to_vec(), [rows, self.block], device);
         OnDevice {
@@ -205,7 +208,7 @@ impl Frame {
     }
 }
 
-/// A frame's matrices as tensors.
+/// Frame matrices as tensors.
 pub(super) struct OnDevice {
     pub(super) from_positions: Tensor<2>,
     pub(super) from_inputs: Option<Tensor<2>>,

@@ -1,15 +1,16 @@
-//! Even times: sequence models count samples, records have stamps.
+//! Resampling to even times: sequence models count samples, records have timestamps.
 
 use crate::data::{Trajectory, interpolated};
 use crate::{Ahead, LearnError, Past};
 use dynamics::Hold;
 
-/// Mean of an input from `time` on for `interval` seconds; before the first and after the last sample it stays.
+/// Returns the mean of an input over `interval` seconds from `time` on. Before the first and after the last
+/// sample, the input is constant.
 fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f64)) -> f64 {
     let at = |time: f64| {
         let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
         let before = next.saturating_sub(1);
-        // A trajectory has samples, and places are cut to theirs.
+        // A trajectory has samples, and indices are clipped to them.
         let pick = |column: &[f64], place: usize| column.get(place).copied().unwrap_or_default();
         let (from, to) = (pick(times, before), pick(times, next));
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
@@ -19,13 +20,13 @@ fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f6
             Hold::Zero => pick(input, next),
         }
     };
-    // Midpoints: where stamps are even, the first of them reads the sample itself.
+    // Midpoint rule: with even timestamps, the first midpoint reads the sample itself.
     let parts = 8;
     let mid = |part: i32| at(time + (f64::from(part) + 0.5) * interval / f64::from(parts));
     (0..parts).map(mid).sum::<f64>() / f64::from(parts)
 }
 
-/// A trajectory at even times from its first sample on.
+/// Resamples a trajectory at even times from its first sample on.
 pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Trajectory, LearnError> {
     // A trajectory has samples.
     let first = part.times_s().first().copied().unwrap_or_default();
@@ -39,12 +40,12 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Tra
     Trajectory::new(part.name(), times, values, input)
 }
 
-/// The last `count` even times of a past, ending at its last sample: positions.
+/// Returns the positions at the last `count` even times of a past; the last one is its last sample.
 pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Result<Vec<f64>, LearnError> {
     let (first, last) = (past.times_s.first().copied(), past.times_s.last().copied());
     // A past without samples is too short, which is refused below.
     let (first, last) = (first.unwrap_or_default(), last.unwrap_or_default());
-    // Jitter may shorten a past by a part of an interval; the cubic reaches that far.
+    // Jitter may shorten a past by part of an interval; the cubic interpolation bridges this gap.
     let there = ((last - first) / interval + 0.5).floor() as usize + 1;
     if there < count || past.times_s.len() < 4 {
         return Err(LearnError::ShortPast {
@@ -57,8 +58,8 @@ pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Re
     Ok((0..count).rev().map(|back| interpolated(past.times_s, past.values, time(back))).collect())
 }
 
-/// The input at the last `before` even times of a past, its last sample among them, and at `after` times beyond; `None`
-/// without an input.
+/// Returns the input at the last `before` even times of a past (including its last sample) and at `after`
+/// later times; `None` without an input.
 pub(super) fn inputs(
     (past, ahead): (&Past<'_>, &Ahead<'_>),
     hold: Hold,
@@ -67,13 +68,13 @@ pub(super) fn inputs(
 ) -> Option<Vec<f64>> {
     let input = [past.input?, ahead.input?].concat();
     let times = [past.times_s, ahead.times_s].concat();
-    // A past is at least eight samples.
+    // A past has at least eight samples.
     let last = past.times_s.last().copied().unwrap_or_default();
     let time = |at: usize| last + (at as f64 - before as f64 + 1.0) * interval;
     Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect())
 }
 
-/// Values at times of a record from values at even times, the first of which is `first`.
+/// Interpolates values at the times of a record from values at even times that start at `first`.
 pub(super) fn read_back(values: &[f64], first: f64, interval: f64, times: &[f64]) -> Vec<f64> {
     let even: Vec<f64> = (0..values.len()).map(|at| first + at as f64 * interval).collect();
     times.iter().map(|&time| interpolated(&even, values, time)).collect()

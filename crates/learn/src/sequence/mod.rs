@@ -1,17 +1,18 @@
-//! Sequence models: from a window of the past and the input to the future.
+//! Sequence models: maps from a window of the past and the input to the future.
 //!
-//! A model predicts a block of samples at once: the linear prediction (an autoregression's free run) corrected by a
-//! network that reads the past, the input over past and block, and the linear prediction itself. Blocks follow one
-//! another, each with what was predicted as its past: a free run. Training minimizes the error of free runs of several
-//! blocks, its gradient passed back from block to block. Where the network says nothing, the model is the
-//! autoregression.
+//! A model predicts a block of samples at once: a linear prediction (an autoregression's free run), corrected
+//! by a network that reads the past, the input over past and block, and the linear prediction itself. A free
+//! run is a chain of blocks, each of which takes the previous predictions as its past. Training minimizes the
+//! error of free runs of several blocks; the gradient is passed back from block to block. If the network's
+//! correction is zero, the model is the autoregression.
 //!
-//! A new architecture is one file: a configuration that implements [`Architecture`], a burn module that implements
-//! [`Network`], and an [`Entry`](crate::Entry) with [`build`] and [`restore`]. Everything else stands here.
+//! A new architecture is one file: a configuration that implements [`Architecture`], a burn module that
+//! implements [`Network`], and an [`Entry`](crate::Entry) with [`build`] and [`restore`]. This module
+//! supplies everything else.
 //!
-//! Bengio, Vinyals, Jaitly, Shazeer, NeurIPS 28 (2015) 1171 (why models are trained on their own predictions); Forgione,
-//! Piga, Automatica 127 (2021) 109492 (multi-step simulation error); Beintema, Schoukens, Tóth, Automatica 156 (2023)
-//! 111210 (past windows as encoders, truncated simulation).
+//! Bengio, Vinyals, Jaitly, Shazeer, NeurIPS 28 (2015) 1171 (why models are trained on their own
+//! predictions); Forgione, Piga, Automatica 127 (2021) 109492 (multi-step simulation error); Beintema,
+//! Schoukens, Tóth, Automatica 156 (2023) 111210 (past windows as encoders, truncated simulation).
 
 mod band;
 mod fields;
@@ -37,63 +38,67 @@ use seed::Seed;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Input of a network: `tokens` of shape windows × (past + block) × features, the samples of the past first. The
-/// features of a sample are its position (observed in the past, linearly predicted in the block), the input where there is
-/// one, both in scaled units, and 1 for samples of the block, 0 for those of the past.
+/// Input of a network.
+///
+/// The features of a sample are its position (observed in the past, linearly predicted in the block), the
+/// input if there is one, both in scaled units, and a flag: 1 for samples of the block, 0 for those of the
+/// past.
 #[derive(Debug, Clone)]
 pub struct Batch {
-    /// Windows × (past + block) × features.
+    /// Tensor of shape windows × (past + block) × features; the samples of the past come first.
     pub tokens: Tensor<3>,
-    /// Samples of a block.
+    /// Number of samples in a block.
     pub block: usize,
 }
 
-/// A network: a burn module that corrects linear predictions.
+/// Network that corrects linear predictions: a burn module.
 pub trait Network: Module {
-    /// Corrections of shape windows × block, in units of the linear prediction's typical error. That of a sample may depend
-    /// on the inputs up to that sample only.
+    /// Returns corrections of shape windows × block, in units of the linear prediction's typical error. The
+    /// correction of a sample may depend only on inputs up to that sample.
     fn forward(&self, batch: Batch) -> Tensor<2>;
 }
 
-/// Lengths that a network is made for.
+/// Dimensions that a network is built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
-    /// Features of a sample.
+    /// Number of features of a sample.
     pub features: usize,
-    /// Samples of past and block.
+    /// Number of samples in past and block together.
     pub length: usize,
-    /// Samples of a block.
+    /// Number of samples in a block.
     pub block: usize,
 }
 
-/// An architecture: its configuration, read from the section of its name.
+/// Architecture: its configuration, read from the section with its name.
 pub trait Architecture: Clone + Send + Sync + Serialize + DeserializeOwned + 'static {
-    /// Identifier, the name of the section.
+    /// Identifier, which is also the name of the section.
     const ID: &'static str;
 
-    /// Its network.
+    /// Network of the architecture.
     type Network: Network;
 
-    /// A network with start weights drawn from a seed, by [`drawn`] as a rule.
+    /// Builds a network with initial weights drawn from a seed, usually by [`drawn`].
     ///
     /// # Errors
-    /// [`LearnError::Backend`] where the tensor library refuses.
+    /// [`LearnError::Backend`] if the tensor library fails.
     fn init(&self, sizes: Sizes, seed: &Seed, device: &Device) -> Result<Self::Network, LearnError>;
 }
 
-/// A linear layer of zeros; [`drawn`] fills it.
+/// Builds a linear layer of zeros; [`drawn`] fills it.
 #[must_use]
 pub fn linear(inputs: usize, outputs: usize, device: &Device) -> Linear {
     LinearConfig::new(inputs, outputs).with_initializer(Initializer::Zeros).init(device)
 }
 
-/// A module filled with start weights: matrices, and kernels of convolutions (outputs, inputs, taps), normal with variance
-/// 1/(inputs · taps) (LeCun, Bottou, Orr, Müller 1998), but zero
-/// where the parameter's name begins with `head`, so that an untrained model is the linear prediction; vectors stay as
-/// they are. `own` gives the values of parameters that begin otherwise, by name and shape.
+/// Fills a module with initial weights.
+///
+/// Matrices, and kernels of convolutions (outputs, inputs, taps), are normal with variance 1/(inputs · taps)
+/// (LeCun, Bottou, Orr, Müller 1998). They are zero if the parameter's name begins with `head`, so that an
+/// untrained model is the linear prediction. Vectors keep their values. `own` overrides the initial values of
+/// a parameter, by its name and shape.
 ///
 /// # Errors
-/// [`LearnError::Backend`] where the tensor library refuses.
+/// [`LearnError::Backend`] if the tensor library fails.
 pub fn drawn<M: Module>(
     module: M,
     seed: &Seed,
@@ -125,7 +130,7 @@ pub fn drawn<M: Module>(
     Ok(with_parameters(module, &weights, device)?)
 }
 
-/// The device that a trained model predicts on: the processor.
+/// Returns the device on which a trained model predicts: the CPU.
 pub(crate) fn plain_device() -> Result<Device, LearnError> {
     Ok(cpu_as_set()?)
 }

@@ -1,4 +1,4 @@
-//! A trained sequence model.
+//! Trained sequence model.
 
 use super::band::{Band, Calibration};
 use super::frame::Frame;
@@ -11,18 +11,18 @@ use neural::{NamedTensor, named_parameters, with_parameters};
 use seed::Seed;
 use serde::{Deserialize, Serialize};
 
-/// Scaled position beyond which a prediction runs away.
+/// Absolute scaled position beyond which a prediction counts as diverged.
 const BOUND: f64 = 1e3;
 
-/// An architecture's weights with the frame that they were trained in.
+/// Weights of an architecture, with the frame of their training.
 pub(super) struct SequenceModel<A> {
     architecture: A,
     frame: Frame,
     weights: Vec<NamedTensor>,
-    /// Root mean square error of free runs over the validation part, in the position's unit: the band of a model without
-    /// a calibrated one.
+    /// Root mean square error of free runs over the validation part, in the unit of the positions; used as
+    /// band if `band` is `None`.
     std: f64,
-    /// The calibrated band; `None` where validation left nothing to calibrate on.
+    /// Calibrated band; `None` if the validation part left nothing to calibrate on.
     band: Option<Band>,
 }
 
@@ -64,8 +64,8 @@ impl<A: Architecture> SequenceModel<A> {
         Ok(Self { architecture, frame, weights, std, band })
     }
 
-    /// The same model with bands calibrated on free runs over the validation part, from each part's start and from a third of
-    /// its length on.
+    /// Returns the same model with bands calibrated on free runs over the validation part. The runs start at
+    /// the beginning of each part and at a third of its length.
     pub(super) fn calibrated(self, data: &DataSet) -> Self {
         let run = |(record, part): (usize, &Trajectory), share: f64| {
             let begin = (share * part.len() as f64) as usize;
@@ -99,9 +99,9 @@ impl<A: Architecture> SequenceModel<A> {
     }
 }
 
-/// Times ahead, counted from the end of the past.
+/// Returns the times ahead, counted from the end of the past.
 fn leads(past: &Past<'_>, ahead: &Ahead<'_>) -> Vec<f64> {
-    // A past is at least eight samples.
+    // A past has at least eight samples.
     let now = past.times_s.last().copied().unwrap_or_default();
     ahead.times_s.iter().map(|time| time - now).collect()
 }
@@ -112,7 +112,7 @@ impl<A: Architecture> Model for SequenceModel<A> {
         let (Some(&now), Some(&end)) = (past.times_s.last(), ahead.times_s.last()) else {
             return Ok(Predicted::default());
         };
-        // Two samples more than the last time needs, so that the cubic that reads it has both sides.
+        // Two samples beyond the last time, so that the interpolating cubic has samples on both sides.
         let needed = ((end - now) / frame.interval_s).ceil() as usize + 2;
         let after = needed.div_ceil(frame.block) * frame.block;
         let start = past_positions(past, frame.interval_s, frame.past)?;

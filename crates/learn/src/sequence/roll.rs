@@ -1,8 +1,8 @@
 //! Free runs in batches, and their gradient.
 //!
-//! The tape of an automatic differentiation costs more than linearly in its length, so each block has a tape of its own:
-//! a forward pass keeps the positions only, and on the way back each block is computed again, the adjoint of its
-//! prediction given by all that came after it.
+//! The cost of an automatic differentiation tape grows faster than linearly with its length, so each block
+//! has its own tape. A forward pass keeps only the positions; the backward pass recomputes each block, given
+//! the adjoint of its prediction from all later blocks.
 
 use super::frame::{Frame, OnDevice};
 use super::{Architecture, Batch, Network, Sizes};
@@ -14,7 +14,7 @@ use estimator::FitError;
 use neural::{flat_gradient, named_parameters, tensor, values, with_parameters};
 use seed::Seed;
 
-/// A sequence model in training.
+/// Sequence model during training.
 pub(super) struct Roll<'a, A: Architecture> {
     pub(super) architecture: &'a A,
     pub(super) frame: &'a Frame,
@@ -22,13 +22,13 @@ pub(super) struct Roll<'a, A: Architecture> {
     pub(super) validation: &'a [Trajectory],
     /// Windows of the validation part.
     pub(super) held: Vec<Window>,
-    /// A network of the right shape.
+    /// Network of the right shape.
     pub(super) shape: A::Network,
-    /// The device that computes.
+    /// Device for the computation.
     pub(super) device: Device,
 }
 
-/// Windows as rows of numbers: positions and, where there is one, the input, each of `length` samples.
+/// Windows as rows of numbers, each of `length` samples: positions and, if there is one, the input.
 pub(super) struct Rows {
     pub(super) count: usize,
     pub(super) length: usize,
@@ -54,7 +54,7 @@ impl Rows {
         }
     }
 
-    /// The samples `from..from + length` of every row.
+    /// Returns the samples `from..from + length` of every row.
     fn cut(&self, of: &[f64], from: usize, length: usize) -> Vec<f64> {
         let rows = of.chunks(self.length.max(1));
         // Blocks end within their rows.
@@ -91,8 +91,8 @@ fn block<N: Network>(
     linear + network.forward(Batch { tokens, block: frame.block }) * matrices.miss.clone()
 }
 
-/// Free run of every row from its first `frame.past` positions to its end: the positions with those after the past
-/// replaced by predictions. `rows.length` is the past and a whole number of blocks.
+/// Runs every row freely from its first `frame.past` positions to its end. Returns the positions with those
+/// after the past replaced by predictions. `rows.length` is the past plus a whole number of blocks.
 pub(super) fn free_run<N: Network>(
     network: &N,
     frame: &Frame,
@@ -114,14 +114,15 @@ pub(super) fn free_run<N: Network>(
     Ok(whole)
 }
 
-/// Starts of the windows of the blocks, one after the other.
+/// Returns the starts of the blocks' windows in order.
 fn starts(frame: &Frame, rows: &Rows) -> impl DoubleEndedIterator<Item = usize> + use<> {
     let (block, blocks) = (frame.block, rows.length.saturating_sub(frame.past) / frame.block);
     (0..blocks).map(move |number| number * block)
 }
 
 impl<A: Architecture> Roll<'_, A> {
-    /// Adds the gradient with respect to the weights, given the derivatives with respect to each position of a run.
+    /// Adds the gradient with respect to the weights, given the derivatives with respect to each position of
+    /// a run.
     fn pass_back(
         &self,
         weights: &[f64],
@@ -191,7 +192,7 @@ impl<A: Architecture> Trainable for Roll<'_, A> {
     }
 }
 
-/// Lengths that a frame asks of a network.
+/// Returns the dimensions that a frame requires of a network.
 pub(super) fn sizes(frame: &Frame) -> Sizes {
     Sizes { features: frame.features(), length: frame.length(), block: frame.block }
 }

@@ -1,4 +1,4 @@
-//! Properties that every architecture shares.
+//! Properties shared by all architectures.
 
 use super::*;
 use crate::baselines::Arx;
@@ -36,13 +36,13 @@ fn driven() -> DataSet {
     data_set(&drag_and_cubic(), true, 2e-3)
 }
 
-/// An architecture from its settings, those that it has.
+/// Builds an architecture from those settings that it has.
 fn of<A: Architecture>() -> A {
     let all = json!({ "units": 4, "channels": 4, "states": 2, "layers": 2, "heads": 2, "head_width": 3 });
     serde_json::from_value(all).unwrap()
 }
 
-/// Derivatives of the loss along a direction, by the gradient and by differences.
+/// Returns the derivative of the loss along a direction, by the gradient and by finite differences.
 fn slopes<A: Architecture>() -> [f64; 2] {
     let Framed { frame, train, validation } = Framed::new(&driven(), &settings()).unwrap();
     let (architecture, device) = (of::<A>(), plain_device().unwrap());
@@ -58,7 +58,7 @@ fn slopes<A: Architecture>() -> [f64; 2] {
     };
     let batch = windows(&train, frame.past, 3 * frame.block, 97);
     let mut weights = roll.initial(&Seed::new(4)).unwrap();
-    // The head begins at zero, where no other weight has an effect.
+    // The head starts at zero, where no other weight has an effect.
     weights.iter_mut().enumerate().for_each(|(at, weight)| *weight += 0.1 * (at as f64).sin());
     let direction: Vec<f64> = (0..weights.len()).map(|at| (1.7 * at as f64).cos()).collect();
     let mut gradient = vec![0.0; weights.len()];
@@ -81,7 +81,7 @@ fn gradients_pass_through_all_blocks_of_a_free_run() {
     }
 }
 
-/// Change of the corrections, sample by sample, where the last token of all changes.
+/// Returns the change of the corrections, sample by sample, caused by a change of the very last token.
 fn change_of_the_last_sample<A: Architecture>() -> Vec<f64> {
     let (sizes, device) = (Sizes { features: 3, length: 10, block: 4 }, plain_device().unwrap());
     let network = of::<A>().init(sizes, &Seed::new(1), &device).unwrap();
@@ -115,7 +115,8 @@ fn sequence_learners() -> impl Iterator<Item = &'static str> {
     LEARNERS.iter().filter(|entry| entry.kind == Kind::Sequence).map(|entry| entry.id)
 }
 
-/// Without a step a sequence model is an autoregression, whose ridge keeps it from being worse than the baseline.
+/// Without a training step, a sequence model is an autoregression; its ridge keeps it from being worse than
+/// the baseline.
 #[test]
 fn an_untrained_network_is_the_linear_prediction() {
     let data = driven();
@@ -139,7 +140,7 @@ fn a_past_that_is_too_short_is_refused() {
     assert!(error.contains("the past is too short: 5 of the 25 samples"), "{error}");
 }
 
-/// Keeps the first states of a training and no later one.
+/// Stores the first states of a training and none of the later ones.
 struct FirstStates {
     left: Mutex<u64>,
     kept: Mutex<Option<Vec<u8>>>,
@@ -172,7 +173,7 @@ fn a_resumed_model_is_the_same_to_the_bit() {
     let place = FirstStates { left: Mutex::new(3), kept: Mutex::default() };
     let keeping = Context { checkpoints: Some(&place), ..context() };
     assert_eq!(bytes(&keeping), whole);
-    // The second epoch's state is there, and the training goes on from it.
+    // The state of the second epoch is stored, and the training resumes from it.
     let state: crate::training::State = keeping.resumed().unwrap().unwrap();
     assert_eq!(state.epoch, 2);
     assert_eq!(bytes(&keeping), whole);

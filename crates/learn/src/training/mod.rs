@@ -1,9 +1,9 @@
-//! The training loop that sequence models share: windows in batches, Adam, a schedule, clipping, early stopping, and a
-//! state that resumes to the bit.
+//! Training loop shared by the sequence models: batches of windows, Adam, a learning-rate schedule, gradient
+//! clipping, early stopping, and a state that resumes bit for bit.
 //!
-//! A sequence model implements [`Trainable`]: its number of weights, their start, and the loss of a batch with its
-//! gradient. [`train`] does the rest. Kingma, Ba, ICLR 2015 (Adam); Loshchilov, Hutter, ICLR 2017 and 2019 (cosine
-//! schedule, decoupled weight decay); Pascanu, Mikolov, Bengio, ICML 2013 (clipping).
+//! A sequence model implements [`Trainable`]: its initial weights, the loss of a batch with its gradient, and
+//! a validation error. [`train`] does the rest. Kingma, Ba, ICLR 2015 (Adam); Loshchilov, Hutter, ICLR 2017
+//! and 2019 (cosine schedule, decoupled weight decay); Pascanu, Mikolov, Bengio, ICML 2013 (clipping).
 
 mod schedule;
 #[cfg(test)]
@@ -17,91 +17,92 @@ use rand::seq::SliceRandom;
 use seed::Seed;
 use serde::{Deserialize, Serialize};
 
-/// A model with a loss.
+/// Model with a loss that can be minimized.
 pub trait Trainable {
-    /// Weights to begin from, drawn from a seed.
+    /// Draws initial weights from a seed.
     ///
     /// # Errors
-    /// [`LearnError`] where they cannot be drawn.
+    /// [`LearnError`] if they cannot be drawn.
     fn initial(&self, seed: &Seed) -> Result<Vec<f64>, LearnError>;
 
-    /// Mean loss of a batch of windows, and its gradient into `gradient`, which is as long as the weights and zero.
+    /// Returns the mean loss of a batch of windows and writes its gradient into `gradient`, which is as long
+    /// as the weights and zero on entry.
     ///
     /// # Errors
-    /// [`LearnError`] where the batch cannot be computed.
+    /// [`LearnError`] if the batch cannot be computed.
     fn loss(&self, weights: &[f64], batch: &[Window], gradient: &mut [f64]) -> Result<f64, LearnError>;
 
-    /// Error on the validation part, which decides when to stop and which weights to keep.
+    /// Returns the error on the validation part, which decides when to stop and which weights to keep.
     ///
     /// # Errors
-    /// [`LearnError`] where it cannot be computed.
+    /// [`LearnError`] if it cannot be computed.
     fn validation(&self, weights: &[f64]) -> Result<f64, LearnError>;
 
-    /// Root of the loss's unit, in the position's unit.
+    /// Returns the factor that converts the square root of the loss to the unit of the positions.
     fn unit(&self) -> f64 {
         1.0
     }
 }
 
-/// How a model is trained.
+/// Options of a training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Training {
-    /// Passes over the windows.
+    /// Number of passes over the windows.
     pub epochs: u64,
-    /// Windows in a batch.
+    /// Number of windows in a batch.
     pub batch: usize,
-    /// Learning rate, and how it falls.
+    /// Learning-rate schedule.
     pub schedule: Schedule,
-    /// Norm that a gradient is cut to.
+    /// Norm to which a gradient is clipped.
     pub clip: f64,
-    /// Decay of the weights per step, over the learning rate.
+    /// Weight decay per step, divided by the learning rate.
     pub weight_decay: f64,
-    /// Epochs without a better validation after which training stops.
+    /// Number of epochs without a better validation error after which training stops.
     pub patience: u64,
 }
 
-/// Where a training stands: all that it needs to go on to the same bits.
+/// State of a training: everything needed to resume it bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Weights.
+    /// Current weights.
     pub weights: Vec<f64>,
-    /// Weights of the best validation so far.
+    /// Weights with the smallest validation error so far.
     pub best: Vec<f64>,
-    /// Their validation error.
+    /// Validation error of `best`.
     pub best_validation: f64,
-    /// Epochs since.
+    /// Number of epochs since `best` was found.
     pub waited: u64,
-    /// Epochs done.
+    /// Number of completed epochs.
     pub epoch: u64,
-    /// Steps done.
+    /// Number of completed steps.
     pub steps: u64,
     first: Vec<f64>,
     second: Vec<f64>,
 }
 
-/// A finished training.
+/// Finished training.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trained {
-    /// The state at the end; `best` holds the weights to use.
+    /// Final state; `best` holds the weights to use.
     pub state: State,
-    /// Whether validation stopped getting better before the epochs ran out.
+    /// `true` if the validation error stopped improving before the epochs ran out.
     pub stopped_early: bool,
 }
 
-/// Decay of Adam's averages of gradients and of their squares.
+/// Decay of Adam's averages of the gradient and of its square.
 const DECAYS: [f64; 2] = [0.9, 0.999];
 
-/// Keeps Adam's denominator from vanishing.
+/// Term that keeps Adam's denominator from vanishing.
 const SMALL: f64 = 1e-8;
 
-/// Trains on windows, from the beginning or from a state that was kept; `keep` is called after every epoch, and with
-/// the state before the epoch in which the training was interrupted.
+/// Trains on windows, from the beginning or from a stored state. `keep` is called after every epoch; if the
+/// training is interrupted, it is called with the state before the interrupted epoch.
 ///
-/// The order of the windows in an epoch follows from the seed and the epoch's number alone, so that a resumed training
-/// sees what an uninterrupted one would.
+/// The order of the windows in an epoch depends only on the seed and the number of the epoch, so a resumed
+/// training sees the same batches as an uninterrupted one.
 ///
 /// # Errors
-/// [`LearnError::Interrupted`], and what the model refuses; [`LearnError::Unsolvable`] where there is no window.
+/// [`LearnError::Interrupted`], and the model's errors; [`LearnError::Unsolvable`] if there is no window.
 pub fn train(
     model: &dyn Trainable,
     windows: &[Window],
@@ -163,7 +164,7 @@ impl State {
         })
     }
 
-    /// One pass over the windows; gives the mean loss.
+    /// Makes one pass over the windows and returns the mean loss.
     fn epoch(
         &mut self,
         model: &dyn Trainable,
@@ -191,11 +192,12 @@ impl State {
         Ok(sum / count.max(1) as f64)
     }
 
-    /// One step of Adam with decoupled weight decay.
+    /// Takes one step of Adam with decoupled weight decay.
     fn step(&mut self, gradient: &mut [f64], rate: f64, training: &Training) {
         let norm = gradient.iter().map(|own| own * own).sum::<f64>().sqrt();
         if !norm.is_finite() {
-            // A batch that blew up teaches nothing; the step counts, so that the schedule goes on.
+            // A batch with a non-finite gradient is skipped; the step still counts, so that the schedule
+            // continues.
             self.steps += 1;
             return;
         }

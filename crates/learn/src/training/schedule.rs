@@ -1,20 +1,20 @@
-//! Learning rates over a training.
+//! Learning-rate schedule.
 
 use serde::{Deserialize, Serialize};
 
-/// A learning rate that rises over the first steps and falls along a half cosine.
+/// Learning rate that rises linearly over the first steps and falls along a half cosine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Schedule {
-    /// Largest rate.
+    /// Largest learning rate.
     pub peak: f64,
-    /// Share of the steps over which it rises from zero.
+    /// Share of the steps over which the rate rises from zero.
     pub warm_up: f64,
-    /// Rate at the end, as a share of the largest.
+    /// Final learning rate, as a share of the largest.
     pub last: f64,
 }
 
 impl Schedule {
-    /// Rate of a step, counted from 0, of `planned` in all.
+    /// Returns the rate of a step, counted from 0, out of `planned` steps.
     #[must_use]
     pub fn rate(&self, step: u64, planned: u64) -> f64 {
         let at = (step as f64 + 1.0) / planned.max(1) as f64;

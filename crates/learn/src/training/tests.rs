@@ -2,7 +2,7 @@ use super::*;
 use crate::data::{Trajectory, windows};
 use crate::testing::{context, friction_and_gravity, record};
 
-/// A line of two weights from a past of two samples to the next one.
+/// Linear model with two weights that predicts the next sample from a past of two samples.
 struct Line {
     parts: Vec<Trajectory>,
 }
@@ -51,7 +51,7 @@ fn line() -> (Line, Vec<Window>) {
 fn adam_reaches_the_least_squares_line() {
     let (model, all) = line();
     let trained = train(&model, &all, &training(200), None, &context(), &mut |_| Ok(())).unwrap();
-    // A sampled oscillation is its own doubled last value less the one before, nearly.
+    // For a sampled oscillation, the next value is nearly twice the last value minus the one before.
     assert!(trained.state.best_validation < 0.02, "{:?}", trained.state);
     assert!((trained.state.best[1] - 1.9).abs() < 0.2 && (trained.state.best[0] + 0.95).abs() < 0.2);
 }

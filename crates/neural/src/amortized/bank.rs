@@ -1,55 +1,54 @@
-//! The simulated envelopes that an amortized network learns from.
+//! Simulated envelopes that train an amortized network.
 
 use crate::sequence::Sequence;
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use serde::Deserialize;
 
-/// Where the simulated envelopes come from: exponentials, some of them bent, with Gaussian scatter on
-/// ln A, at times that are not quite even.
+/// Prior over simulated envelopes: exponentials, some of them bent, with Gaussian scatter on ln A, at
+/// slightly uneven times.
 ///
 /// Ranges and defaults are in [`fields`](super::fields).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Prior {
-    /// Fewest and most peaks, drawn evenly in the logarithm.
+    /// Smallest and largest number of peaks; log-uniform.
     pub peaks: [usize; 2],
-    /// Least and largest change of ln A over the envelope, drawn evenly in the logarithm; one in two
-    /// envelopes grows.
+    /// Smallest and largest change of ln A over the envelope; log-uniform. Half of the envelopes grow.
     pub decay: [f64; 2],
-    /// Least and largest standard deviation of ln A about the curve, drawn evenly in the logarithm.
+    /// Smallest and largest standard deviation of ln A about the curve; log-uniform.
     pub scatter: [f64; 2],
-    /// Largest standard deviation of a peak's time, in units of the interval; drawn evenly from 0.
+    /// Largest standard deviation of a peak's time, in units of the interval; uniform from 0.
     pub unevenness: f64,
-    /// Largest probability that a peak is missing; drawn evenly from 0.
+    /// Largest probability that a peak is missing; uniform from 0.
     pub missing: f64,
-    /// Share of the envelopes that bend.
+    /// Share of bent envelopes.
     pub bent: f64,
-    /// Largest distance of a bent envelope from its chord, as a share of the decay; drawn evenly, to
-    /// either side.
+    /// Largest distance of a bent envelope from its chord, as a share of the decay; uniform, to either side.
     pub bend: f64,
 }
 
-/// What a network is shown, and what it should have said.
+/// Training example: the sequence shown to a network, and the line that it should return.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Example {
-    /// Entries of mean 0 and spread 1.
+    /// Sequence with mean 0 and standard deviation 1.
     pub sequence: Sequence,
-    /// Level c and rate r of the line behind it, z ≈ c − r·s, in the same units.
+    /// Level c and rate r of the true line z ≈ c − r·s, in the same units.
     pub line: [f64; 2],
 }
 
-/// Largest shift of a peak's time, in units of the interval: peaks keep their order.
+/// Largest shift of a peak's time, in units of the interval; small enough to keep the peaks in order.
 const LARGEST_SHIFT: f64 = 0.45;
 
-/// Of so many examples one is seen as the first look sees it, the others as later looks do.
+/// One in this many examples is shown as at the first look, the others as at later looks.
 const FIRST_LOOK_EVERY: usize = 4;
 
-/// Largest error of the line that a later look begins from, in standard errors of the rate. Drawn evenly:
-/// a rate beyond the scatter of its neighbors must not be less likely for that, or the network would
-/// learn to lean toward the line it has, and to be too sure of it.
+/// Largest error of the line at the start of a later look, in standard errors of the rate; drawn uniformly.
+///
+/// If large errors were less likely than small ones, the network would learn to stay near its current line
+/// and to understate its error.
 const LARGEST_MISS: f64 = 8.0;
 
-/// A simulated envelope: a sequence in s and ln A, and the line closest to its noise-free curve.
+/// Simulated envelope: a sequence in s and ln A, and the line closest to its noise-free curve.
 struct Simulated {
     sequence: Sequence,
     line: [f64; 2],
@@ -57,8 +56,8 @@ struct Simulated {
 }
 
 impl Prior {
-    /// Examples of one length: some as the first look sees them, most as later looks do, with part of the
-    /// decay taken off. At most `longest` entries each.
+    /// Draws examples of equal length, each with at most `longest` entries. Some are shown as at the first
+    /// look; from most, a line near the true one has been subtracted, as at later looks.
     pub fn examples(&self, count: usize, longest: usize, generator: &mut impl Rng) -> Vec<Example> {
         let peaks = self.draw_peaks(generator);
         let examples = (0..count).map(|at| {
@@ -70,17 +69,17 @@ impl Prior {
         examples.collect()
     }
 
-    /// Simulated envelopes of one length, in s and ln A, and level and rate of the line behind each.
+    /// Draws simulated envelopes of equal length, in s and ln A, each with level and rate of its true line.
     pub fn sequences(&self, count: usize, generator: &mut impl Rng) -> Vec<(Sequence, [f64; 2])> {
         let peaks = self.draw_peaks(generator);
         let simulated = (0..count).map(|_| self.simulate(peaks, generator));
         simulated.map(|simulated| (simulated.sequence, simulated.line)).collect()
     }
 
-    /// A number of peaks.
+    /// Draws a number of peaks.
     fn draw_peaks(&self, generator: &mut impl Rng) -> usize {
         let [fewest, most] = self.peaks.map(|peaks| peaks as f64);
-        // Half a peak on either side gives the ends their share.
+        // Half a peak on either side gives both endpoints their full share.
         let drawn = log_uniform([fewest - 0.5, most + 0.5], generator).round();
         drawn.clamp(fewest, most) as usize
     }
@@ -99,7 +98,7 @@ impl Prior {
         Simulated { sequence: Sequence { times, values }, line, scatter }
     }
 
-    /// Times of the peaks, from −1 to 1.
+    /// Draws the times of the peaks, from −1 to 1.
     fn draw_times(&self, peaks: usize, generator: &mut impl Rng) -> Vec<f64> {
         let missing = self.missing * generator.random::<f64>();
         let unevenness = self.unevenness * generator.random::<f64>();
@@ -113,14 +112,14 @@ impl Prior {
                 place += 1.0;
             }
         }
-        // At least FEWEST are drawn; of none nothing is scaled.
+        // At least FEWEST peaks are drawn; an empty list is not scaled.
         let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
         times.iter().map(|time| 2.0 * (time - first) / (last - first) - 1.0).collect()
     }
 }
 
 impl Simulated {
-    /// A line that a reader may have after some looks: the one behind the envelope, missed by some
+    /// Draws a line that a reader may have after some looks: the true line with a rate that is off by some
     /// standard errors.
     fn nearby_line(&self, generator: &mut impl Rng) -> [f64; 2] {
         let std_error = self.scatter * (3.0 / self.sequence.len() as f64).sqrt();
@@ -129,7 +128,7 @@ impl Simulated {
         [level, rate + missed]
     }
 
-    /// The example that a reader sees who has taken a line off.
+    /// Returns the example that a reader sees after subtracting a line.
     fn seen_from(mut self, [level, rate]: [f64; 2], longest: usize) -> Example {
         for (s, value) in self.sequence.times.iter().zip(&mut self.sequence.values) {
             *value -= level - rate * s;
@@ -141,21 +140,22 @@ impl Simulated {
     }
 }
 
-/// How a curve leaves its chord: as uᵖ does from u, with u the share of the record that is over, or still
-/// to come.
+/// Deviation of a curve from its chord, as uᵖ deviates from u, where u is the elapsed or the remaining share
+/// of the record.
 ///
-/// p = 2 is a parabola, as a damping that falls with the amplitude gives it to first order; a large p stays
-/// straight and plunges at one end, as dry friction makes ln A do before the oscillator comes to rest.
+/// p = 2 is a parabola, the first-order effect of a damping that falls with the amplitude. A large p is
+/// nearly straight and drops steeply at one end, as dry friction makes ln A do before the oscillator comes to
+/// rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bend {
     /// Largest distance from the chord, as a share of the decay; of either sign.
     size: f64,
     power: f64,
-    /// Whether u is what is still to come.
+    /// `true` if u is the remaining share, `false` if it is the elapsed share.
     early: bool,
 }
 
-/// Powers p of a bend.
+/// Smallest and largest power p of a bend.
 const POWERS: [f64; 2] = [2.0, 8.0];
 
 impl Bend {
@@ -166,7 +166,7 @@ impl Bend {
         Self { size, power: log_uniform(POWERS, generator), early: generator.random() }
     }
 
-    /// Distance from the chord at s, as a share of the decay.
+    /// Returns the distance from the chord at s, as a share of the decay.
     fn off_chord(self, s: f64) -> f64 {
         let u = if self.early { (1.0 - s) / 2.0 } else { (1.0 + s) / 2.0 };
         // u − uᵖ is largest at u = p^(−1/(p − 1)).
@@ -175,19 +175,21 @@ impl Bend {
     }
 }
 
-/// A sequence brought to mean 0 and spread 1.
+/// Sequence standardized to mean 0 and standard deviation 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standardized {
     pub(super) sequence: Sequence,
-    /// Mean that was taken off.
+    /// Mean that was subtracted.
     pub(super) mean: f64,
-    /// Standard deviation that was divided by; 0 where all entries are the same.
+    /// Standard deviation of the original values; 0 if all are equal, and the standardized values are 0 then.
     pub(super) spread: f64,
 }
 
 impl Standardized {
-    /// At most `longest` entries: longer sequences are read as means over runs of neighbors, all runs as
-    /// long as each other or nearly, since the network takes entries to be equally good.
+    /// Standardizes a sequence and pools it to at most `longest` entries.
+    ///
+    /// The entries of a longer sequence are means over runs of neighbors. All runs have nearly the same
+    /// length, because the network treats all entries as equally accurate.
     pub(super) fn of(sequence: Sequence, longest: usize) -> Self {
         let peaks_in_run = sequence.len().div_ceil(longest.max(1));
         let runs = sequence.len() / peaks_in_run.max(1);
@@ -202,7 +204,7 @@ impl Standardized {
         Self { sequence, mean, spread }
     }
 
-    /// Level and rate of a line in the sequence's own units, from those before.
+    /// Converts level and rate of a line to the standardized units.
     fn scaled(&self, [level, rate]: [f64; 2]) -> [f64; 2] {
         [(level - self.mean) / self.spread, rate / self.spread]
     }
@@ -212,8 +214,8 @@ fn log_uniform([least, most]: [f64; 2], generator: &mut impl Rng) -> f64 {
     least * (most / least).powf(generator.random::<f64>())
 }
 
-/// Level and rate, z ≈ c − r·s, of the line closest to a curve at given times: for the noise-free curve
-/// of a simulated envelope, whose λ it defines where that bends.
+/// Returns level and rate of the line z ≈ c − r·s closest to a curve at given times. For the noise-free curve
+/// of a simulated envelope, this line defines λ even if the envelope bends.
 fn closest_line(times: &[f64], curve: &[f64]) -> [f64; 2] {
     let count = times.len() as f64;
     let (middle, mean) = (times.iter().sum::<f64>() / count, curve.iter().sum::<f64>() / count);
@@ -235,7 +237,7 @@ mod tests {
         StdRng::seed_from_u64(3)
     }
 
-    /// Share of entries for which something holds.
+    /// Returns the share of entries that satisfy a condition.
     fn share<T>(entries: &[T], holds: impl Fn(&T) -> bool) -> f64 {
         entries.iter().filter(|entry| holds(entry)).count() as f64 / entries.len() as f64
     }
@@ -243,19 +245,20 @@ mod tests {
     #[test]
     fn envelopes_are_drawn_as_it_is_said() {
         let (prior, mut generator) = (prior(), generator());
-        // One of each batch, so that the numbers of peaks are independent.
+        // One envelope of each batch, so that the numbers of peaks are independent.
         let simulated: Vec<_> = (0..4000)
             .map(|_| {
                 let peaks = prior.draw_peaks(&mut generator);
                 prior.simulate(peaks, &mut generator)
             })
             .collect();
-        // Half lie below the geometric mean of the ends; of 4000, ± 0.8 %, the bounds are five off.
+        // Half lie below the geometric mean of the endpoints: of 4000, ± 0.8 %; the bounds are five standard
+        // deviations away.
         let median = |below: f64| assert!((below - 0.5).abs() < 0.04, "{below}");
         median(share(&simulated, |one| one.sequence.len() as f64 <= (9.5_f64 * 400.5).sqrt()));
         median(share(&simulated, |one| one.scatter <= (0.003_f64 * 0.3).sqrt()));
         median(share(&simulated, |one| one.line[1] > 0.0));
-        // The change over s from −1 to 1 is twice the rate; bends move the line by less than that.
+        // The change over s from −1 to 1 is twice the rate; bends shift the line by less than that.
         median(share(&simulated, |one| 2.0 * one.line[1].abs() <= (0.3_f64 * 8.0).sqrt()));
         for one in &simulated {
             assert!((10..=400).contains(&one.sequence.len()) && (0.003..=0.3).contains(&one.scatter));
@@ -286,7 +289,7 @@ mod tests {
                 times.iter().zip(values).map(|(s, z)| (z - chord(s)).abs()).fold(0.0, f64::max)
             })
             .collect();
-        // Even within 0 to 0.1·2.
+        // Uniform from 0 to 0.1·2.
         assert!(distances.iter().all(|distance| *distance < 0.2 + 1e-6));
         let half = share(&distances, |distance| *distance < 0.1);
         assert!((half - 0.5).abs() < 0.125, "{half}");
@@ -317,7 +320,7 @@ mod tests {
             assert!((values.iter().sum::<f64>() / count).abs() < 1e-6);
             assert!((values.iter().map(|z| z * z).sum::<f64>() / count - 1.0).abs() < 1e-9);
             let [level, rate] = example.line;
-            // What is left over of a later look is of the scatter's size, so only first looks are clean.
+            // The residual at a later look is as small as the scatter, so only first looks are free of noise.
             if (rate.abs() - 3_f64.sqrt()).abs() < 0.1 {
                 let miss = times.iter().zip(values).map(|(s, z)| (z - (level - rate * s)).abs());
                 assert!(miss.fold(0.0, f64::max) < 3.0);
@@ -341,7 +344,7 @@ mod tests {
     #[test]
     fn runs_of_a_long_envelope_are_as_long_as_each_other() {
         let prior = Prior { peaks: [69, 69], ..prior() };
-        // 69 peaks in at most 24 entries: three to an entry.
+        // 69 peaks in at most 24 entries: three peaks per entry.
         assert_eq!(prior.examples(2, 24, &mut generator())[0].sequence.len(), 23);
     }
 

@@ -1,4 +1,4 @@
-//! How far what a network says of its errors is to be believed.
+//! Calibration of the standard errors that a network states.
 
 use super::bank::Prior;
 use super::training::{Calibration, Training};
@@ -6,19 +6,21 @@ use crate::decay::Encoder;
 use burn::tensor::Device;
 use estimator::{FitContext, FitError};
 
-/// The normal distribution's quantile at 97.5 %.
+/// 97.5 % quantile of the standard normal distribution.
 pub(super) const QUANTILE_975: f64 = 1.959_963_984_540_054;
 
-/// Share of the intervals that are to hold the truth.
+/// Nominal coverage of the intervals.
 const COVERAGE: f64 = 0.95;
 
 impl Training {
-    /// The factors with which 95 % intervals hold the truth in 95 % of simulated envelopes, which the
-    /// network has not been trained on and reads in batches: each is looked at until the last of its batch is settled, which is
-    /// oftener than one read alone. `None` where somebody asked to stop.
+    /// Computes the factors on stated standard errors with which 95 % intervals cover the truth in 95 % of
+    /// simulated envelopes. `None` if a stop was requested.
     ///
-    /// Reference: Papadopoulos, Proedrou, Vovk, Gammerman, Inductive confidence machines for regression,
-    /// ECML 2002, normalized by the stated error.
+    /// The network has not been trained on these envelopes. It reads them in batches, and looks at all
+    /// envelopes of a batch until the last one has settled, so more often than at a single one.
+    ///
+    /// Reference: Papadopoulos, Proedrou, Vovk, Gammerman, Inductive confidence machines for regression, ECML
+    /// 2002, normalized by the stated error.
     pub(super) fn calibrate<E: Encoder>(
         &self,
         prior: &Prior,
@@ -43,8 +45,8 @@ impl Training {
     }
 }
 
-/// The factor by which standard errors are too small, from misses in units of them: the
-/// ⌈0.95·(n + 1)⌉-th smallest miss over 1.96. 1 where there are too few to tell.
+/// Returns the factor by which standard errors are too small, from errors in units of the stated ones: the
+/// ⌈0.95·(n + 1)⌉-th smallest over 1.96. Returns 1 if there are too few errors.
 fn factor(mut misses: Vec<f64>) -> f64 {
     misses.sort_by(f64::total_cmp);
     let rank = (COVERAGE * (misses.len() + 1) as f64).ceil() as usize;
@@ -58,10 +60,10 @@ mod tests {
 
     #[test]
     fn the_factor_makes_an_interval_hold_what_it_says() {
-        // Of 1..=99 in units of 1/1.96: the 95th smallest.
+        // For 1..=99 in units of 1/1.96: the 95th smallest.
         let misses = (1..100).rev().map(|miss| QUANTILE_975 * f64::from(miss)).collect();
         assert!((factor(misses) - 95.0).abs() < 1e-12);
-        // Nineteen misses tell where the largest one is, eighteen do not.
+        // With nineteen errors the quantile is the largest one; with eighteen it is undefined.
         assert!((factor((1..20).map(f64::from).collect()) * QUANTILE_975 - 19.0).abs() < 1e-12);
         assert_eq!(factor((1..19).map(f64::from).collect()), 1.0);
         assert_eq!(factor(vec![f64::NAN; 40]), 1.0);

@@ -1,4 +1,4 @@
-//! The estimator: train, then read.
+//! Amortized estimator: trains a network, then reads envelopes with it.
 
 use super::bank::Prior;
 use super::calibration::QUANTILE_975;
@@ -18,52 +18,54 @@ use estimator::{
 use seed::Seed;
 use settings::{Resolved, SettingsError};
 
-/// A network that can be taught to read envelopes.
+/// Network architecture that can be trained to read envelopes.
 pub trait Skilled: Clone + Send + Sync + 'static {
-    /// The network.
+    /// Network type.
     type Encoder: Encoder;
 
-    /// The network, saying `says` numbers of a sequence; its weights may be anything.
+    /// Builds a network that outputs `says` numbers per sequence; its weights are arbitrary.
     fn encoder(&self, says: usize, device: &Device) -> Self::Encoder;
 
-    /// Start values in the order of the flat list.
+    /// Returns initial values in the order of the flat parameter list.
     ///
     /// # Errors
-    /// [`FitError::Backend`] where burn refuses.
+    /// [`FitError::Backend`] if burn fails.
     fn start(&self, encoder: &Self::Encoder, seed: &Seed) -> Result<Vec<f64>, FitError>;
 }
 
-/// An amortized estimator: a network, what it learns from, and how.
+/// Amortized estimator: a network, the prior of its training envelopes, and the training options.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Amortized<N> {
-    /// The network.
+    /// Network architecture.
     pub network: N,
-    /// The envelopes it learns from.
+    /// Prior of the training envelopes.
     pub prior: Prior,
-    /// How it learns and reads.
+    /// Options for training and reading.
     pub training: Training,
 }
 
-/// An amortized estimator that has been trained.
+/// Trained amortized estimator.
 struct Trained<N> {
     estimator: Amortized<N>,
     skill: Skill,
 }
 
-/// What is watched where there is no envelope: this many peaks of λ = 1/s, a tenth of a second apart.
+/// Envelope that is watched during a training if there is none to read: this many peaks of λ = 1/s, a tenth
+/// of a second apart.
 const WATCHED_PEAKS: usize = 30;
 const WATCHED_INTERVAL_S: f64 = 0.1;
 
-/// Looks at what is watched: enough to tell how far the training is, at a tenth of its time.
+/// Number of looks at the watched envelope: enough to show the progress of the training, at a tenth of its
+/// time.
 const WATCHED_LOOKS: usize = 2;
 
 impl<N: Skilled> Amortized<N> {
-    /// The estimator from checked settings: prior and training from the section `estimator`, which holds
-    /// [`fields`](super::fields) besides the network's own keys.
+    /// Builds the estimator from checked settings: prior and training options come from the section
+    /// `estimator`, which holds the keys of [`fields`](super::fields) and the network's own keys.
     ///
     /// # Errors
-    /// [`SettingsError::Declaration`] where a key is not declared; [`SettingsError::BadValue`] where there
-    /// are fewer peaks at most than at least.
+    /// [`SettingsError::Declaration`] if a key is not declared; [`SettingsError::BadValue`] if the largest
+    /// number of peaks is below the smallest.
     pub fn new(network: N, settings: &Resolved) -> Result<Self, SettingsError> {
         let (prior, training): (Prior, _) = (settings.section("estimator")?, settings.section("estimator")?);
         let [fewest, most] = prior.peaks;
@@ -80,7 +82,8 @@ impl<N: Skilled> Amortized<N> {
         Ok(Self { network, prior, training })
     }
 
-    /// Trains; the observer is told the λ read from a sequence under a scaling.
+    /// Trains the network. At every step, the observer gets the λ read from `watched`, converted by a
+    /// scaling.
     fn train(
         &self,
         context: &FitContext<'_>,
@@ -113,14 +116,13 @@ impl<N: Skilled> Amortized<N> {
             false => &skill.parameters,
         };
         let encoder = with_parameters(self.network.encoder(SAID, &device), parameters, &device)?;
-        // Its answer is a line through what it reads.
+        // The answer is a line through the sequence that was read.
         let mut reading = self.training.read(&encoder, &peaks.clone().as_read(context), &device)?;
         reading.level_std_error *= skill.calibration.level;
         reading.rate_std_error *= skill.calibration.rate;
         let decay_rate = scaling.rate_per_centered_time(reading.rate);
         let fitted = |s: f64| scaling.log_amplitude(reading.level - reading.rate * s);
-        // The network has been shown no envelope with fewer peaks: what it says of its errors there
-        // is a guess.
+        // The network was never trained on envelopes with fewer peaks, so its stated error would be a guess.
         let [fewest, _] = self.prior.peaks;
         let knows_its_error = skill.reached == Reached::Converged && envelope.len() >= fewest;
         let rate_std_error = scaling.rate_per_centered_time(reading.rate_std_error);
@@ -233,7 +235,7 @@ mod tests {
     use settings::{Document, Resolved, Section, SettingsError};
     use std::cell::RefCell;
 
-    /// λ = 0.2 1/s with a scatter of about 0.03.
+    /// Builds an envelope with λ = 0.2 1/s and a scatter of about 0.03.
     fn envelope(peaks: usize) -> Envelope {
         let times: Vec<f64> = (0..peaks).map(|at| 0.3 * at as f64).collect();
         let scatter = |at: usize| 0.1 * ((at * 7919 % 101) as f64 / 101.0 - 0.5);
@@ -271,10 +273,10 @@ mod tests {
         let [low, high] = known.interval_95;
         assert_eq!(estimate.stop.reached, Reached::Converged, "{:?}", estimate.stop);
         assert!((low..high).contains(&0.2), "{known:?}");
-        // σ·√(12/n)/duration = 0.029·0.55/11.7, and what so small a network misses.
+        // σ·√(12/n)/duration = 0.029·0.55/11.7, plus the error of so small a network.
         assert!((0.001..0.003).contains(&known.std_error), "{known:?}");
         assert!(estimate.stop.because.contains("trained on 4800 simulated envelopes"));
-        // Untrained it says next to nothing.
+        // Without training, the answer is far off.
         let untrained = fit(&estimator(), 40, Some(0)).unwrap();
         assert!((untrained.decay_rate / 0.2 - 1.0).abs() > 0.1, "{}", untrained.decay_rate);
         assert_eq!((untrained.stop.reached, untrained.uncertainty), (Reached::BudgetSpent, None));
@@ -290,7 +292,7 @@ mod tests {
             assert!((prediction.log_amplitude - expected).abs() < 1e-12);
         }
         let [inside, beyond] = [inside, beyond].map(|prediction| prediction.std_error.unwrap());
-        // The scatter is uniform of width 0.1.
+        // The scatter is uniform with width 0.1.
         assert!((inside / (0.1 / 12_f64.sqrt()) - 1.0).abs() < 0.1, "{inside}");
         assert!(beyond > inside);
         let few = fit(&estimator(), 40, Some(5)).unwrap();
@@ -324,7 +326,8 @@ mod tests {
         assert_eq!(steps.0.borrow().len(), 302);
     }
 
-    /// Stopped at a step, or while it calibrates, it goes on to the same bits, each step told once.
+    /// Stopped at any step or during the calibration, the training resumes bit for bit, and each step is
+    /// reported once.
     #[test]
     fn stopped_anywhere_it_goes_on_to_the_same_bits() {
         struct Stopping<'a>(u64, &'a Cancel, RefCell<Vec<Step>>);
@@ -383,7 +386,7 @@ mod tests {
         assert!(fit(&Amortized { prior, ..plain }, 29, None).unwrap().uncertainty.is_none());
     }
 
-    /// Drawing a number between a larger and a smaller one used to end the program.
+    /// Regression test: swapped limits used to end the program when a number was drawn between them.
     #[test]
     fn fewest_peaks_come_before_most() {
         let keys = [

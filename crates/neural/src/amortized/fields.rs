@@ -1,8 +1,8 @@
-//! The configuration keys that every amortized estimator has.
+//! Configuration keys shared by all amortized estimators.
 
 use settings::{Default, Field, Kind};
 
-/// Fewest and most peaks of a simulated envelope.
+/// Smallest and largest number of peaks of a simulated envelope.
 pub const PEAKS: Field = Field {
     key: "peaks",
     kind: Kind::Integers { min: 5, max: 10_000, at_least: 2, at_most: 2 },
@@ -12,7 +12,7 @@ pub const PEAKS: Field = Field {
     source: "ring-downs of a few cycles up to Q of about a thousand",
 };
 
-/// Least and largest decay of a simulated envelope.
+/// Smallest and largest decay of a simulated envelope.
 pub const DECAY: Field = Field {
     key: "decay",
     kind: Kind::Floats { min: 1e-3, max: 100.0, at_least: 2, at_most: 2 },
@@ -22,7 +22,7 @@ pub const DECAY: Field = Field {
     source: "from amplitudes that lose a quarter to those that lose all but a three-thousandth, a 12-bit sensor's range",
 };
 
-/// Least and largest scatter of a simulated envelope.
+/// Smallest and largest scatter of a simulated envelope.
 pub const SCATTER: Field = Field {
     key: "scatter",
     kind: Kind::Floats { min: 1e-6, max: 10.0, at_least: 2, at_most: 2 },
@@ -42,7 +42,7 @@ pub const UNEVENNESS: Field = Field {
     source: "host stamps that come in bursts shift a peak by a tenth of a period",
 };
 
-/// Missing peaks of a simulated envelope.
+/// Probability of missing peaks in a simulated envelope.
 pub const MISSING: Field = Field {
     key: "missing",
     kind: Kind::Float { min: 0.0, max: 0.9 },
@@ -72,7 +72,7 @@ pub const BEND: Field = Field {
     source: "the published records lie 13 to 19 % off",
 };
 
-/// Length of the sequence.
+/// Largest number of entries that the network reads.
 pub const LONGEST_SEQUENCE: Field = Field {
     key: "longest_sequence",
     kind: Kind::Integer { min: 4, max: 1000 },
@@ -82,7 +82,7 @@ pub const LONGEST_SEQUENCE: Field = Field {
     source: "means over runs cost 1/runs² of the slope's accuracy: 0.7 % of the variance at 12",
 };
 
-/// Looks at an envelope.
+/// Largest number of looks at an envelope.
 pub const MOST_LOOKS: Field = Field {
     key: "most_looks",
     kind: Kind::Integer { min: 1, max: 1000 },
@@ -92,7 +92,7 @@ pub const MOST_LOOKS: Field = Field {
     source: "several times what envelopes of the prior take",
 };
 
-/// Steps of the training.
+/// Number of training steps.
 pub const MAX_STEPS: Field = Field {
     key: "max_steps",
     kind: Kind::Integer { min: 0, max: 1_000_000 },
@@ -102,7 +102,7 @@ pub const MAX_STEPS: Field = Field {
     source: "where the error over fresh envelopes is near that of least squares",
 };
 
-/// Envelopes of a step.
+/// Number of envelopes per step.
 pub const BATCH: Field = Field {
     key: "batch",
     kind: Kind::Integer { min: 2, max: 10_000 },
@@ -112,7 +112,7 @@ pub const BATCH: Field = Field {
     source: "64 take twice the time and gain one or two percent of accuracy",
 };
 
-/// Learning rate.
+/// Largest learning rate.
 pub const LEARNING_RATE: Field = Field {
     key: "learning_rate",
     kind: Kind::Float { min: 1e-6, max: 1.0 },
@@ -122,7 +122,7 @@ pub const LEARNING_RATE: Field = Field {
     source: "Kingma, Ba 2015; Loshchilov, Hutter 2017",
 };
 
-/// Envelopes of the calibration.
+/// Number of envelopes for the calibration.
 pub const CALIBRATION: Field = Field {
     key: "calibration",
     kind: Kind::Integer { min: 0, max: 1_000_000 },

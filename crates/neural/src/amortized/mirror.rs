@@ -1,16 +1,17 @@
-//! Reading a sequence forward and backward.
+//! Reading of a sequence forward and backward.
 //!
-//! Told backward, an envelope grows as fast as it decays. A network need not learn this: it reads both ways
-//! and says the mean, so that a curve that bends evenly about its middle has no rate to it, exactly.
+//! Read backward, an envelope grows as fast as it decays. The network need not learn this symmetry: it reads
+//! both ways, and the answer is the mean. A curve that bends symmetrically about its middle then has a rate
+//! of exactly zero.
 
 use crate::sequence::Sequence;
 use burn::tensor::Tensor;
 
-/// Numbers a network says of a sequence: level, rate, and the logarithms of their variances times the
-/// number of entries.
+/// Number of network outputs per sequence: level, rate, and the logarithms of their variances multiplied by
+/// the number of entries.
 pub(super) const SAID: usize = 4;
 
-/// The sequences, then each of them backward.
+/// Returns the sequences, followed by each of them reversed.
 pub(super) fn both_ways<'a>(sequences: impl Iterator<Item = &'a Sequence> + Clone) -> Vec<Sequence> {
     sequences.clone().cloned().chain(sequences.map(backward)).collect()
 }
@@ -22,8 +23,8 @@ fn backward(sequence: &Sequence) -> Sequence {
     }
 }
 
-/// What is said of sequences, from what is said of them [`both_ways`]: the means, the rates' with the
-/// backward one's sign changed.
+/// Combines the outputs for sequences read [`both_ways`] into one output per sequence: the mean, with the
+/// sign of the backward rate changed.
 pub(super) fn agreed(said: Tensor<2>) -> Tensor<2> {
     let sequences = said.dims()[0] / 2;
     let forward = said.clone().narrow(0, 0, sequences);
@@ -47,7 +48,7 @@ mod tests {
         let [forward, backward] = both_ways([&sequence].into_iter()).try_into().unwrap();
         assert_eq!(forward, sequence);
         assert_eq!(backward, Sequence { times: vec![-1.0, -0.5, 1.0], values: vec![-1.0, 0.0, 3.0] });
-        // Two sequences: said forward, forward, backward, backward.
+        // Outputs for two sequences, in the order forward, forward, backward, backward.
         let said = vec![1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0, 1.0, -4.0, 5.0, 4.0, 0.0, 0.0, 0.0, 6.0];
         let agreed = agreed(tensor(said, [4, 4], &device().unwrap()));
         assert_eq!(values(agreed).unwrap(), [1.0, 3.0, 4.0, 4.0, 0.0, 0.0, 0.0, 3.0]);

@@ -1,22 +1,22 @@
-//! Networks that learn to read envelopes in general: trained on simulated ones, then shown the one in
-//! question.
+//! Amortized networks: trained once on simulated envelopes, then used to read any envelope.
 //!
-//! A network is handed a sequence of mean 0 and spread 1 and says a line, z ≈ c − r·s, and how well it
-//! knows c and r. It is trained on envelopes drawn from a stated [`Prior`], by the Gaussian likelihood of
-//! the line behind each. Reading an envelope it looks several times: at the peaks themselves first, then
-//! at what its line has left over, brought to spread 1 again, until a look moves the rate by a hundredth
-//! of its stated error. So the accuracy it needs at one look is that of the scatter, however small the
-//! scatter is beside the decay, and a decay added to the envelope is added to the answer.
+//! A network gets a sequence with mean 0 and standard deviation 1. It returns a line, z ≈ c − r·s, and the
+//! variances of c and r. It is trained on envelopes drawn from a stated [`Prior`], by the Gaussian likelihood
+//! of each envelope's true line. An envelope is read in several looks: the first at the peaks themselves,
+//! each later one at the residual of the current line, scaled to standard deviation 1 again. Looking ends
+//! when a look changes the rate by less than a hundredth of its stated error. A single look therefore needs
+//! no more accuracy than the scatter allows, even if the scatter is small compared with the decay, and a
+//! decay added to the envelope is added to the answer.
 //!
-//! It reads forward and backward: told backward, an envelope grows as fast as it decays.
+//! A sequence is read forward and backward, because a reversed envelope grows as fast as it decays.
 //!
-//! No line is fitted to the envelope: without its training a network says next to nothing, however often
-//! it looks.
+//! No line is fitted to the envelope: without training, a network's answer is almost meaningless, however
+//! often it looks.
 //!
-//! Reference: looking again at what is left with the same network: Putzky, Welling, Recurrent inference
-//! machines for solving inverse problems, arXiv:1706.04008 (2017); a network that states its variance:
-//! Nix, Weigend, Proc. IEEE Int. Conf. Neural Networks (1994) 55; amortized inference: Cranmer, Brehmer,
-//! Louppe, PNAS 117 (2020) 30055.
+//! Reference: repeated looks at the residual with the same network: Putzky, Welling, Recurrent inference
+//! machines for solving inverse problems, arXiv:1706.04008 (2017); a network that states its variance: Nix,
+//! Weigend, Proc. IEEE Int. Conf. Neural Networks (1994) 55; amortized inference: Cranmer, Brehmer, Louppe,
+//! PNAS 117 (2020) 30055.
 
 mod bank;
 mod calibration;

@@ -1,4 +1,4 @@
-//! How a trained network reads envelopes.
+//! Reading of envelopes by a trained network.
 
 use super::bank::Standardized;
 use super::mirror::SAID;
@@ -10,29 +10,32 @@ use crate::sequence::Sequence;
 use burn::tensor::Device;
 use estimator::FitError;
 
-/// What a network makes of a sequence: z ≈ level − rate·s, in the sequence's units.
+/// Line that a network reads from a sequence: z ≈ level − rate·s, in the units of the sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reading {
     pub(super) level: f64,
     pub(super) rate: f64,
-    /// Standard errors of both, as stated at the last look.
+    /// Standard errors of level and rate, as stated at the last look.
     pub(super) level_std_error: f64,
     pub(super) rate_std_error: f64,
     pub(super) looks: usize,
-    /// How far the last look moved the rate, in stated standard errors.
+    /// Change of the rate at the last look, in stated standard errors.
     pub(super) moved: f64,
-    /// What the last look saw was rounding.
+    /// `true` if the residual at the last look was only rounding errors.
     pub(super) exact: bool,
 }
 
-/// A look that moves the rate by a smaller share of its stated error tells nothing new.
+/// Change of the rate at a look, in stated standard errors, below which the reading has settled.
 const SETTLED: f64 = 0.01;
 
-/// Looks that are believed in full. Where they have not settled it, the network sees too much one time and
-/// too much the other way the next; going half way ends that, and ends at the same place.
+/// Number of looks whose answer is applied in full; later ones are halved.
+///
+/// If a reading has not settled by then, the network overestimates alternately in both directions. Half steps
+/// end this oscillation at the same fixed point.
 const FULL_LOOKS: usize = 10;
 
-/// A spread that is left over, as a share of the one at the beginning, where rounding has the last word.
+/// Standard deviation of the residual, relative to that of the original sequence, at which rounding errors
+/// dominate.
 const ROUNDING: f64 = 1e-13;
 
 impl Reading {
@@ -46,19 +49,19 @@ impl Reading {
         exact: false,
     };
 
-    /// Whether another look would tell nothing new.
+    /// Returns `true` if another look would not change the answer.
     pub(super) fn is_settled(&self) -> bool {
         self.exact || self.moved <= SETTLED
     }
 
-    /// What the line leaves of a sequence.
+    /// Returns the residual of a sequence about the line.
     fn left_of(&self, peaks: &Sequence) -> Sequence {
         let pairs = peaks.times.iter().zip(&peaks.values);
         let values = pairs.map(|(s, z)| z - (self.level - self.rate * s)).collect();
         Sequence { times: peaks.times.clone(), values }
     }
 
-    /// Adds what the network says of a look.
+    /// Updates the reading with the network's output for a look.
     fn learn(&mut self, seen: &Standardized, [level, rate, level_variance, rate_variance]: [f64; SAID]) {
         let entries = seen.sequence.len() as f64;
         let std_error = |log_variance: f64| (log_variance.exp() / entries).sqrt();
@@ -71,7 +74,7 @@ impl Reading {
         self.looks += 1;
     }
 
-    /// Variance of a peak's z about the line, over peaks − 2.
+    /// Returns the variance of a peak's z about the line, with peaks − 2 degrees of freedom.
     pub(super) fn scatter_variance(&self, peaks: &Sequence) -> f64 {
         let squares: f64 = self.left_of(peaks).values.iter().map(|left| left * left).sum();
         squares / (peaks.len() as f64 - 2.0)
@@ -79,7 +82,7 @@ impl Reading {
 }
 
 impl Training {
-    /// Reads a sequence, looking until nothing changes.
+    /// Reads a sequence; looks until the answer no longer changes.
     pub(super) fn read<E: Encoder>(
         &self,
         encoder: &E,
@@ -93,7 +96,7 @@ impl Training {
             .ok_or_else(|| FitError::Backend { problem: "one sequence gave no reading".to_owned() })
     }
 
-    /// Reads sequences of one length, looking at all of them until nothing changes in any.
+    /// Reads sequences of equal length; looks at all of them until none changes.
     pub(super) fn read_all<E: Encoder>(
         &self,
         encoder: &E,
@@ -124,7 +127,7 @@ impl Training {
     }
 }
 
-/// What the network says of sequences.
+/// Returns the network's outputs for standardized sequences.
 fn say<E: Encoder>(
     encoder: &E,
     seen: &[Standardized],
@@ -150,10 +153,11 @@ mod tests {
     use crate::flat::with_parameters;
     use crate::sequence::Sequence;
 
-    /// A reader that says this share of the rate it sees, level 0, and variances e^0.2 and e^0.5 an entry.
+    /// Builds a reader that returns this share of the rate that it sees, level 0, and variances e^0.2 and
+    /// e^0.5 per entry.
     fn reader(share: f64) -> Tiny {
         let device = device().unwrap();
-        // Σ s² of even entries is a third of their number, nearly; rates have the other sign.
+        // For even times, Σ s² is nearly a third of the number of entries; rates have the opposite sign.
         let weights = [0.0, -3.0 * share, 0.0, 0.0, 0.0, 0.0, 0.2, 0.5];
         with_parameters(estimator().network.encoder(SAID, &device), &weights, &device).unwrap()
     }
@@ -171,7 +175,7 @@ mod tests {
         let peaks = sequence(5.0);
         let reading = training.read(&reader(0.7), &peaks, &device).unwrap();
         assert!(reading.is_settled() && reading.looks > 3, "{reading:?}");
-        // Where it settles, s and what is left are orthogonal, to the accuracy of settling.
+        // At the settled answer, s and the residual are orthogonal, to the accuracy of settling.
         let left = reading.left_of(&peaks);
         let along: f64 = left.times.iter().zip(&left.values).map(|(s, z)| s * z).sum();
         assert!(along.abs() < 0.02, "{along}");
@@ -211,10 +215,12 @@ mod tests {
     fn looks_are_counted_and_end() {
         let device = device().unwrap();
         let read = |share| estimator().training.read(&reader(share), &sequence(5.0), &device).unwrap();
-        // It says five times the rate it sees: the next look sees more of it, with the other sign.
+        // It returns five times the rate that it sees, so the residual has a larger rate of the opposite sign
+        // at every look.
         let reading = read(5.0);
         assert!(!reading.is_settled() && reading.looks == 20, "{reading:?}");
-        // Twice the rate: full looks go to and fro for ever, halves settle where others do.
+        // With twice the rate, full steps oscillate forever; half steps settle at the same answer as the
+        // others.
         let (reading, other) = (read(2.0), read(0.7));
         assert!(reading.is_settled() && reading.looks > 10, "{reading:?}");
         assert!((reading.rate - other.rate).abs() < 0.05 * other.rate_std_error, "{reading:?} {other:?}");

@@ -1,4 +1,5 @@
-//! The smallest network that can learn to read, for tests: four numbers times the mean of s·z and of 1.
+//! Smallest network that can learn to read, for tests: its four outputs are linear in the means of s·z and of
+//! 1.
 
 use super::bank::Prior;
 use super::estimator::{Amortized, Skilled};
@@ -19,7 +20,7 @@ pub(super) struct Tiny {
 }
 
 impl Encoder for Tiny {
-    /// s·z and 1.
+    /// Returns the features s·z and 1.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         let entries = sequences[0].len();
         let pairs = sequences.iter().flat_map(|one| one.times.iter().zip(&one.values));
@@ -32,7 +33,7 @@ impl Encoder for Tiny {
     }
 }
 
-/// The network with its weights drawn within ±`scale`.
+/// Network architecture with weights drawn within ±`scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pupil {
     pub(super) scale: f64,

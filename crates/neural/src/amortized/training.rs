@@ -11,31 +11,32 @@ use estimator::{FitContext, FitError, Reached, Step};
 use rand_chacha::ChaCha12Rng;
 use serde::{Deserialize, Serialize};
 
-/// How an amortized network is trained, and how it reads. Ranges and defaults are in
+/// Options for training an amortized network, and for reading with it. Ranges and defaults are in
 /// [`fields`](super::fields).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Training {
-    /// Most entries the network reads; longer envelopes are read as means over runs of neighbors.
+    /// Largest number of entries that the network reads; longer envelopes are read as means over runs of
+    /// neighbors.
     pub longest_sequence: usize,
-    /// Most looks at an envelope.
+    /// Largest number of looks at an envelope.
     pub most_looks: usize,
-    /// Steps of the training, each on envelopes of its own.
+    /// Number of training steps, each on new envelopes.
     pub max_steps: u64,
-    /// Envelopes of a step.
+    /// Number of envelopes per step.
     pub batch: usize,
-    /// Largest rate of Adam.
+    /// Largest learning rate of Adam.
     pub learning_rate: f64,
-    /// Envelopes that show, after the training, how far stated errors are to be believed.
+    /// Number of envelopes that calibrate the stated errors after the training.
     pub calibration: usize,
 }
 
-/// Largest length of a gradient: longer ones are cut to it (Pascanu, Mikolov, Bengio, ICML 2013).
+/// Norm to which a gradient is clipped (Pascanu, Mikolov, Bengio, ICML 2013).
 const LONGEST_GRADIENT: f64 = 1.0;
 
-/// Share of the steps over which the rate rises to its largest.
+/// Share of the steps over which the learning rate rises.
 const RISE: f64 = 0.05;
 
-/// Words that the generator of examples has: 16 to a block, blocks counted by 64 bits.
+/// Number of words of the example generator: 16 per block, with a 64-bit block counter.
 const WORDS: u128 = 1 << 68;
 
 /// Factors on stated standard errors.
@@ -46,11 +47,11 @@ pub(super) struct Calibration {
 }
 
 impl Calibration {
-    /// What the network says, as it says it.
+    /// No calibration: errors as the network states them.
     pub(super) const NONE: Self = Self { level: 1.0, rate: 1.0 };
 }
 
-/// What a training gives.
+/// Result of a training.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Skill {
     pub(super) parameters: Vec<f64>,
@@ -59,15 +60,15 @@ pub(super) struct Skill {
     pub(super) reached: Reached,
 }
 
-/// What a training goes on from.
+/// State from which a training resumes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct State {
     parameters: Vec<f64>,
-    /// The parameters a step before, to go back to where the loss stops being finite.
+    /// Parameters before the last step, which are restored if the loss becomes non-finite.
     before: Vec<f64>,
     adam: Adam,
     steps: u64,
-    /// How far the generator of examples has been read, in words.
+    /// Position of the example generator, in words.
     words: u128,
 }
 
@@ -76,8 +77,8 @@ impl State {
         Self { before: start.clone(), adam: Adam::new(start.len()), parameters: start, steps: 0, words: 0 }
     }
 
-    /// The state that was kept, or that of the start. A training of at most `limit` steps can only go on from one
-    /// that it could have kept itself.
+    /// Returns the stored state, or the initial one if none is stored. A stored state is refused unless a
+    /// training of at most `limit` steps could have stored it.
     fn resumed(start: Vec<f64>, limit: u64, context: &FitContext<'_>) -> Result<Self, FitError> {
         let expected = start.len();
         let Some(state) = context.resumed::<Self>()? else { return Ok(Self::at(start)) };
@@ -97,8 +98,8 @@ impl State {
 }
 
 impl Training {
-    /// Trains an encoder from start values, or from the state that was kept. `rate_of` gives the λ that
-    /// parameters read from whatever is watched.
+    /// Trains an encoder from initial values or from the stored state. `rate_of` returns the λ that given
+    /// parameters read from the watched envelope.
     pub(super) fn train<E: Encoder>(
         &self,
         prior: &Prior,
@@ -149,7 +150,7 @@ impl Training {
             state.adam.step(&mut state.parameters, &gradient, self.rate(state.steps));
             state.steps += 1;
         };
-        // Nothing is said of errors but after all of it.
+        // Errors are calibrated only after a complete training.
         let mut calibration = Calibration::NONE;
         if reached == Reached::Converged {
             let encoder = with_parameters(encoder.clone(), &state.parameters, device)?;
@@ -165,7 +166,7 @@ impl Training {
         Ok(Skill { parameters, calibration, steps, reached })
     }
 
-    /// The learning rate of a step: it rises linearly and falls with a cosine to zero.
+    /// Returns the learning rate of a step: it rises linearly and falls along a cosine to zero.
     ///
     /// Reference: Loshchilov, Hutter, SGDR, ICLR 2017, equation 5.
     fn rate(&self, step: u64) -> f64 {
@@ -179,8 +180,8 @@ impl Training {
     }
 }
 
-/// The mean over the examples of Σ ½·(v + (target − said)²/eᵛ), level and rate, v the logarithm of the
-/// variance that the network states; and its gradient.
+/// Returns the loss and its gradient: the mean over the examples of Σ ½·(v + (target − output)²/eᵛ) over
+/// level and rate, where v is the logarithm of the variance that the network states.
 ///
 /// Reference: Nix, Weigend 1994, equation 2.
 fn loss_and_gradient<E: Encoder>(
@@ -231,7 +232,7 @@ mod tests {
             tensor(vec![0.1, -1.2], [1, 2], &device),
             10,
         );
-        // Without the constant ½·ln 2π of each.
+        // Without the constant ½·ln 2π per term.
         let term = |missed: f64, log: f64| {
             let variance = log.exp() / 10.0;
             0.5 * (variance.ln() + missed * missed / variance)
@@ -267,7 +268,7 @@ mod tests {
     fn the_rate_rises_and_falls_to_nothing() {
         let training = estimator().training;
         let rates: Vec<f64> = (0..300).map(|step| training.rate(step)).collect();
-        // A twentieth of 300 steps up, the rest down.
+        // It rises over a twentieth of the 300 steps and falls over the rest.
         assert!(rates[..15].windows(2).all(|pair| pair[0] < pair[1]));
         assert!(rates[15..].windows(2).all(|pair| pair[0] > pair[1]));
         assert!((rates[14] - 0.1).abs() < 4e-3 && rates[299] < 1e-5 && rates[0] < 4e-3, "{rates:?}");

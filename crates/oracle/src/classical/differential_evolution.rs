@@ -21,38 +21,38 @@ pub const ROUTE: ClassicalRoute = ClassicalRoute {
     fit,
 };
 
-/// How a population evolves.
+/// Parameters of an evolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evolution {
-    /// Members, at least 4.
+    /// Number of members, at least 4.
     pub population: usize,
     /// Factor F of the difference that is added, in 0..2.
     pub difference: f64,
-    /// Chance CR that a parameter comes from the mutant, in 0..1.
+    /// Probability CR that a parameter comes from the mutant, in 0..1.
     pub crossover: f64,
-    /// Generations at most.
+    /// Largest number of generations.
     pub max_generations: u64,
-    /// Spread of the population at which it has contracted: of every parameter, over its range.
+    /// Spread at which the population has contracted: that of every parameter, relative to its range.
     pub spread: f64,
 }
 
-/// Thirty members for the line's two parameters, as scipy's 15 for each.
+/// Thirty members for the line's two parameters: 15 per parameter, as in scipy.
 const LINE: Evolution =
     Evolution { population: 30, difference: 0.6, crossover: 0.9, max_generations: 2000, spread: 1e-13 };
 
-/// |cos| of the angle between residuals and columns at which the best member counts as the minimum.
+/// |cos| of the angle between residuals and columns below which the best member counts as the minimum.
 const TOLERANCE: f64 = 1e-9;
 
-/// Where a population ended.
+/// Final state of a population.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evolved<V> {
-    /// The best member.
+    /// Parameters of the best member.
     pub best: Vec<f64>,
-    /// The objective there.
+    /// Objective at the best member.
     pub value: V,
-    /// Generations.
+    /// Number of generations.
     pub generations: u64,
-    /// Largest spread of a parameter over its range at the end.
+    /// Largest final spread of a parameter, relative to its range.
     pub spread: f64,
 }
 
@@ -79,8 +79,8 @@ fn fit(envelope: &Envelope, seed: &Seed) -> Result<ClassicalFit, OracleError> {
     Ok(line.fit(&evolved.best, evolved.generations, reached, because))
 }
 
-/// One and a half times the steepest slope that values of standard deviation 1 can have (at perfect
-/// correlation); times start at 0, so the constant is no larger.
+/// Returns one and a half times the steepest slope that values of standard deviation 1 can have (at perfect
+/// correlation). Times start at 0, so that the constant is no larger.
 fn widest_slope(line: &Line) -> f64 {
     let count = line.u.len() as f64;
     let mean = line.u.iter().sum::<f64>() / count;
@@ -88,11 +88,11 @@ fn widest_slope(line: &Line) -> f64 {
     1.5 * count.sqrt() / length(&about)
 }
 
-/// Minimizes an objective over a box by DE/rand/1/bin; ends when the population has contracted or the
-/// generations are spent. A trial outside the box is drawn anew in that parameter.
+/// Minimizes an objective over a box by DE/rand/1/bin. It ends when the population has contracted or the
+/// generations are spent. Parameters of a trial that lie outside the box are drawn anew.
 ///
-/// The objective's values only have to be comparable: one of more than double precision keeps the
-/// parameters from ending half-way to the double's digits, where the minimum is flat.
+/// The objective's values only have to be comparable. The minimum is flat, so that in double precision the
+/// parameters would end with half of a double's digits; values of higher precision avoid that.
 pub fn minimize<V: PartialOrd + Copy>(
     objective: impl Fn(&[f64]) -> V,
     bounds: &[[f64; 2]],
@@ -129,7 +129,7 @@ fn inside([low, high]: &[f64; 2], generator: &mut impl Rng) -> f64 {
     low + (high - low) * generator.random::<f64>()
 }
 
-/// x₁ + F·(x₂ − x₃) of three different members, crossed with the target.
+/// Returns x₁ + F·(x₂ − x₃) of three different members, crossed with the target.
 fn mutate<V>(
     members: &[(Vec<f64>, V)],
     target: usize,
@@ -150,7 +150,7 @@ fn mutate<V>(
     else {
         return Vec::new();
     };
-    // One parameter comes from the mutant in any case.
+    // At least one parameter comes from the mutant.
     let certain = generator.random_range(0..bounds.len().max(1));
     own.zip(base)
         .zip(plus.zip(minus))
@@ -166,7 +166,7 @@ fn mutate<V>(
         .collect()
 }
 
-/// Largest spread of a parameter over its range.
+/// Returns the largest spread of a parameter, relative to its range.
 fn contracted<V>(members: &[(Vec<f64>, V)], bounds: &[[f64; 2]]) -> f64 {
     bounds
         .iter()
@@ -179,8 +179,8 @@ fn contracted<V>(members: &[(Vec<f64>, V)], bounds: &[[f64; 2]]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Sums of which the sum of squares of a line is made, in double-double numbers: the cancellation
-/// between them costs half of their 31 digits at most, and an evaluation does not grow with the peaks.
+/// Moments for the sum of squares of a line, in double-double numbers. Cancellation between them costs at
+/// most half of their 31 digits, and the cost of an evaluation does not grow with the number of peaks.
 struct Moments {
     count: DoubleDouble,
     u: DoubleDouble,
@@ -206,7 +206,7 @@ impl Moments {
         }
     }
 
-    /// Σ(a + s·u − v)² = n·a² + 2as·Σu + s²·Σu² − 2a·Σv − 2s·Σuv + Σv².
+    /// Returns Σ(a + s·u − v)² = n·a² + 2as·Σu + s²·Σu² − 2a·Σv − 2s·Σuv + Σv².
     fn sum_of_squares(&self, parameters: &[f64]) -> DoubleDouble {
         let (slope, constant) = pair(parameters);
         let (s, a) = (DoubleDouble::from(slope), DoubleDouble::from(constant));
@@ -224,7 +224,7 @@ mod tests {
     use envelope::Envelope;
     use seed::Seed;
 
-    /// Rastrigin's function: 11² local minima in this box, the least of them 0 at the origin.
+    /// Rastrigin's function: 11² local minima in this box, with the global minimum 0 at the origin.
     fn rastrigin(x: &[f64]) -> f64 {
         x.iter().map(|x| x * x + 10.0 - 10.0 * (std::f64::consts::TAU * x).cos()).sum()
     }
@@ -265,7 +265,7 @@ mod tests {
 
     const WIDE: [[f64; 2]; 2] = [[-100.0, 100.0], [-1000.0, 1000.0]];
 
-    /// x₁ + F·(x₂ − x₃), three different members, none of them the target.
+    /// A mutant is x₁ + F·(x₂ − x₃) of three different members, none of them the target.
     #[test]
     fn a_mutant_is_one_member_and_the_difference_of_two_others() {
         let (members, mut generator) = (members(), Seed::new(5).generator());
@@ -298,11 +298,11 @@ mod tests {
             assert_eq!(other.len(), 1, "{trial:?}");
             changed[other[0]] += 1;
         }
-        // Each as often as the other, to four standard deviations.
+        // Both change equally often, to four standard deviations.
         assert!(changed.iter().all(|count: &i32| (count - 200).abs() < 40), "{changed:?}");
     }
 
-    /// A parameter beyond its range is drawn anew, evenly over the range.
+    /// A parameter beyond its range is drawn anew, uniformly over the range.
     #[test]
     fn trials_stay_in_the_box() {
         let (members, mut generator) = (members(), Seed::new(7).generator());
@@ -322,7 +322,7 @@ mod tests {
     fn the_spread_is_the_widest_over_its_range() {
         assert_eq!(contracted(&members(), &WIDE), 15.0 / 200.0);
         assert_eq!(contracted(&members(), &[[0.0, 1e3], [-50.0, 150.0]]), 0.5);
-        // A range of one value is not spread over.
+        // A parameter with a range of a single value is ignored.
         assert_eq!(contracted(&members(), &[[3.0, 3.0], [-1e3, 1e3]]), 0.05);
         assert_eq!(contracted::<f64>(&[], &[]), 0.0);
     }
@@ -336,7 +336,7 @@ mod tests {
             assert!(evolved.value <= before, "{evolved:?}");
             before = evolved.value;
         }
-        // Of the first members, drawn in this order, none is better.
+        // None of the first members, drawn in this order, is better.
         let mut generator = Seed::new(3).generator();
         let first =
             (0..30).map(|_| [inside(&[-5.12, 5.12], &mut generator), inside(&[-5.12, 5.12], &mut generator)]);
@@ -349,7 +349,7 @@ mod tests {
     fn the_box_holds_every_line() {
         let times: Vec<f64> = (0..9).map(f64::from).collect();
         let line = Line::new(&Envelope::new(times.clone(), times, 20.0).unwrap());
-        // A straight line has the steepest slope there is: u/σ with σ² = (n² − 1)/(12·(n − 1)²).
+        // A straight line has the steepest possible slope: u/σ with σ² = (n² − 1)/(12·(n − 1)²).
         let steepest = (12.0 * 64.0 / 80.0_f64).sqrt();
         assert!((widest_slope(&line) / (1.5 * steepest) - 1.0).abs() < 1e-14);
     }

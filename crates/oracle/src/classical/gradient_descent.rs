@@ -19,26 +19,26 @@ pub const ROUTE: ClassicalRoute = ClassicalRoute {
     fit,
 };
 
-/// Steps, as in the paper.
+/// Number of steps, as in the paper.
 pub const STEPS: u64 = 10_000;
 
-/// |cos| of the angle between residuals and columns at which the descent counts as converged.
+/// |cos| of the angle between residuals and columns below which the descent counts as converged.
 pub const TOLERANCE: f64 = 1e-10;
 
 fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     let fit = descend(envelope, STEPS);
-    // Times so long that their squares overflow leave no step.
+    // If the times are so long that their squares overflow, there is no step size.
     if fit.decay_rate.is_finite() && fit.log_amplitude.is_finite() { Ok(fit) } else { Err(singular()) }
 }
 
-/// Descends F(s, a) = ½·mean of (a + s·t − ln A)² from (0, 0), times in seconds as they are.
+/// Descends F(s, a) = ½·mean of (a + s·t − ln A)² from (0, 0), with times in seconds, unscaled.
 ///
-/// The step is 1/L with L the largest eigenvalue of F's second derivative [[mean t², mean t], [mean t,
-/// 1]], which is constant: the longest step of which every direction shrinks. Along the other
-/// eigenvector the error shrinks by 1 − l/L a step, l the smaller eigenvalue; for 69 peaks over 20 s
-/// that is 1 − 1/500, and 10,000 steps leave some 10⁻⁹ of the first error. The paper's own step is not
-/// given, and its 0.046 % are more than this one leaves. Nothing is scaled, so a longer record in the same time
-/// unit converges worse: that is the method.
+/// The step size is 1/L with L the largest eigenvalue of F's second derivative [[mean t², mean t], [mean t,
+/// 1]], which is constant: the largest step size for which no direction oscillates. Along the other
+/// eigenvector the error shrinks by 1 − l/L per step, with l the smaller eigenvalue. For 69 peaks over 20 s
+/// that is 1 − 1/500, and 10,000 steps leave about 10⁻⁹ of the first error. The paper does not give its step
+/// size, and its error of 0.046 % is larger than the one left here. Nothing is scaled, so that a longer
+/// record in the same time unit converges worse: that is how the method works.
 #[must_use]
 pub fn descend(envelope: &Envelope, steps: u64) -> ClassicalFit {
     let (times, logs) = (envelope.times_s(), envelope.log_amplitudes());
@@ -72,14 +72,14 @@ pub fn descend(envelope: &Envelope, steps: u64) -> ClassicalFit {
     }
 }
 
-/// Larger eigenvalue of [[mean square, mean], [mean, 1]].
+/// Returns the larger eigenvalue of [[mean square, mean], [mean, 1]].
 fn largest_eigenvalue(mean: f64, mean_square: f64) -> f64 {
     let half = f64::midpoint(mean_square, 1.0);
     half + ((mean_square - 1.0) / 2.0).hypot(mean)
 }
 
-/// Largest |cos| of the angles that the residuals make with the constant and with t, rounding errors of
-/// the data apart.
+/// Returns the largest |cos| of the angles that the residuals make with the constant and with t, without the
+/// rounding errors of the data.
 fn largest_cosine(times: &[f64], logs: &[f64], slope: f64, constant: f64) -> f64 {
     let residuals: Vec<f64> = times.iter().zip(logs).map(|(t, y)| slope.mul_add(*t, constant) - y).collect();
     let rounding = ROUNDING * UNIT_ROUNDOFF * length(logs) / TOLERANCE;

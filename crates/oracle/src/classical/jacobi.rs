@@ -2,12 +2,12 @@
 
 use super::vectors::{UNIT_ROUNDOFF, diagonal, dot, length};
 
-/// Sweeps over all pairs of columns; convergence is quadratic, so that six to ten are usual.
+/// Most sweeps over all pairs of columns; convergence is quadratic, so that six to ten are usual.
 const MOST_SWEEPS: usize = 60;
 
-/// A = U·Σ·Vᵀ, the singular values in no order.
+/// Decomposition A = U·Σ·Vᵀ, with the singular values in no particular order.
 pub(super) struct Decomposition {
-    /// Columns of U, of length one; zero where the value is zero.
+    /// Columns of U, of length one; zero if the singular value is zero.
     pub(super) left: Vec<Vec<f64>>,
     pub(super) values: Vec<f64>,
     /// Columns of V.
@@ -48,15 +48,15 @@ pub(super) fn decompose(mut columns: Vec<Vec<f64>>) -> Decomposition {
     Decomposition { left: columns, values, right }
 }
 
-/// Singular values of a matrix given by columns.
+/// Returns the singular values of a matrix given by columns.
 pub(super) fn singular_values(columns: Vec<Vec<f64>>) -> Vec<f64> {
     decompose(columns).values
 }
 
-/// Cosine and sine of the rotation that makes two columns orthogonal; `None` where they are.
+/// Returns cosine and sine of the rotation that makes two columns orthogonal; `None` if they are.
 fn rotation(a: &[f64], b: &[f64], tolerance: f64) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
-    // Not a comparison of products alone: it has to fail for what is no number.
+    // Not only a comparison of products: it has to be false for NaN.
     let crossed = ab.abs() > tolerance * (aa * bb).sqrt() && ab != 0.0;
     if !crossed {
         return None;
@@ -73,7 +73,7 @@ fn rotate(a: &mut [f64], b: &mut [f64], cosine: f64, sine: f64) {
     }
 }
 
-/// Rows of a square matrix given by columns.
+/// Returns the rows of a square matrix given by columns.
 pub(super) fn transpose(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     debug_assert!(columns.iter().all(|column| column.len() == columns.len()), "a square matrix");
     // Without columns there are no rows.

@@ -23,16 +23,16 @@ pub const ROUTE: ClassicalRoute = ClassicalRoute {
     fit,
 };
 
-/// Pairs kept.
+/// Number of stored pairs.
 const MEMORY: usize = 10;
 
-/// Decrease that a step must bring, as a share of what the slope promises.
+/// Smallest decrease by a step, as a share of the decrease that the slope predicts.
 const LEAST_DECREASE: f64 = 1e-4;
 
-/// Share of the slope that a step may leave.
+/// Largest slope after a step, as a share of the slope before.
 const MOST_SLOPE: f64 = 0.9;
 
-/// Trials of a line search.
+/// Most trials of a line search.
 const MOST_TRIALS: usize = 60;
 
 fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
@@ -43,11 +43,12 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
 
 /// Minimizes a function from a start until its relative gradient is at most the tolerance.
 ///
-/// Steps fulfill Wolfe's conditions; where the function is flat to rounding, the slope alone decides
-/// (Hager and Zhang's approximate condition), so that the gradient, not the function, limits the digits.
+/// Steps satisfy Wolfe's conditions. Where the function is flat to rounding, only the slope decides (the
+/// approximate condition of Hager and Zhang), so that the digits are limited by the gradient and not by the
+/// function.
 ///
 /// # Errors
-/// [`OracleError::NotFinite`] (row 1) where the function or its gradient is not finite at the start.
+/// [`OracleError::NotFinite`] (row 1) if the function or its gradient is not finite at the start.
 pub fn minimize(
     function: &impl SmoothFunction,
     start: &[f64],
@@ -70,7 +71,7 @@ pub fn minimize(
             Some(_) => None,
         };
         let Some(next) = next else {
-            // A search that fails along an old curvature may succeed along the gradient.
+            // A search that fails along a direction with old curvature may succeed along the gradient.
             if found.is_none() && !pairs.is_empty() {
                 pairs.clear();
                 continue;
@@ -116,7 +117,7 @@ impl Point {
     }
 }
 
-/// A step and the gradient's change over it.
+/// Step, with the change of the gradient over it.
 struct Pair {
     step: Vec<f64>,
     change: Vec<f64>,
@@ -131,7 +132,8 @@ impl Pair {
     }
 }
 
-/// Minus the gradient times the approximate inverse of the second derivative: the two-loop recursion.
+/// Returns minus the gradient times the approximate inverse of the second derivative, by the two-loop
+/// recursion.
 fn direction(gradient: &[f64], pairs: &VecDeque<Pair>) -> Vec<f64> {
     let mut down: Vec<f64> = gradient.iter().map(|g| -g).collect();
     let mut shares = Vec::new();
@@ -151,16 +153,16 @@ fn direction(gradient: &[f64], pairs: &VecDeque<Pair>) -> Vec<f64> {
     down
 }
 
-/// Looks along a direction for a step that fulfills Wolfe's conditions; `None` where there is none.
+/// Searches along a direction for a step that satisfies Wolfe's conditions; `None` if none is found.
 fn search(function: &impl SmoothFunction, here: &Point, direction: &[f64], first: bool) -> Option<Point> {
     let slope = dot(&here.gradient, direction);
     if slope.is_nan() || slope >= 0.0 {
         return None;
     }
-    // Without curvature the first trial moves by about one.
+    // Without curvature the first trial moves by at most one.
     let mut trial = if first { (1.0 / length(direction)).min(1.0) } else { 1.0 };
     let rounding = 1e-13 * here.value.abs();
-    // A step that is too short and its slope; one that is too long, with its slope where it is finite.
+    // A step that is too short, with its slope; and one that is too long, with its slope if finite.
     let (mut short, mut short_slope) = (0.0, slope);
     let mut long: Option<(f64, Option<f64>)> = None;
     for _ in 0..MOST_TRIALS {
@@ -193,7 +195,8 @@ fn search(function: &impl SmoothFunction, here: &Point, direction: &[f64], first
     None
 }
 
-/// A trial inside a bracket: where the slope vanishes if it is linear, else the middle.
+/// Returns a trial inside a bracket: the zero of the slope by linear interpolation, or the middle if the
+/// slope at the far end is unknown or not positive.
 fn between(short: f64, short_slope: f64, long: f64, long_slope: Option<f64>) -> f64 {
     let width = long - short;
     let share = match long_slope {
@@ -262,7 +265,7 @@ mod tests {
         assert!(minimize(&Valley, &[f64::NAN, 0.0], Limits { tolerance: 1e-12, max_steps: 9 }).is_err());
     }
 
-    /// ½·Σ i·xᵢ².
+    /// Function ½·Σ i·xᵢ².
     struct Bowl;
 
     impl SmoothFunction for Bowl {
@@ -280,7 +283,7 @@ mod tests {
         Point::at(function, x.to_vec()).unwrap()
     }
 
-    /// The last change of the gradient is taken for what it is: H·y = s. All directions go down.
+    /// The approximate inverse reproduces the last change of the gradient: H·y = s. All directions descend.
     #[test]
     fn the_approximate_inverse_knows_the_last_step() {
         let path = [[3.0, -1.0, 2.0], [1.0, -0.5, 1.5], [0.7, 0.1, 0.2], [-0.2, 0.3, 0.1]];
@@ -296,12 +299,12 @@ mod tests {
                 assert!(dot(&direction(&gradient, &pairs), &gradient) < 0.0);
             }
         }
-        // Without a pair it is the gradient's.
+        // Without a pair the direction is minus the gradient.
         assert_eq!(direction(&[1.0, -2.0], &VecDeque::new()), [-1.0, 2.0]);
         assert!((pairs[0].curvature - (4.0 + 2.0 * 0.25 + 3.0 * 0.25)).abs() < 1e-14);
     }
 
-    /// Wolfe's conditions, from steep and from hardly falling starts, with directions of any length.
+    /// Tests Wolfe's conditions from steep and almost flat starts, with directions of any length.
     #[test]
     fn a_step_that_is_found_fulfills_wolfe_s_conditions() {
         let mut found = 0;
@@ -327,10 +330,10 @@ mod tests {
 
     #[test]
     fn a_trial_lies_inside_its_bracket() {
-        // Where a straight line from −2 to 2 is zero.
+        // Zero of a straight line from −2 to 2.
         assert_eq!(between(1.0, -2.0, 3.0, Some(2.0)), 2.0);
         assert_eq!(between(1.0, -1.0, 3.0, Some(3.0)), 1.5);
-        // At most so near to an end.
+        // The trial keeps a distance from the ends of the bracket.
         assert!((between(0.0, -1e-9, 1.0, Some(1.0)) - 0.05).abs() < 1e-15);
         assert!((between(0.0, -1.0, 1.0, Some(1e-9)) - 0.95).abs() < 1e-15);
         for without in [None, Some(-1.0), Some(0.0)] {
@@ -338,7 +341,8 @@ mod tests {
         }
     }
 
-    /// A quadratic of four parameters: about as many steps, as by conjugate gradients.
+    /// A quadratic in four parameters takes about as many steps as it has parameters, as with conjugate
+    /// gradients.
     #[test]
     fn a_quadratic_takes_few_steps() {
         let minimum =

@@ -1,4 +1,4 @@
-//! Method 9: the Levenberg–Marquardt method, as MINPACK and `curve_fit` have it.
+//! Method 9: the Levenberg–Marquardt method, as in MINPACK and `curve_fit`.
 
 use super::line::{Line, NEUTRAL, TOLERANCE};
 use super::local::Local;
@@ -26,13 +26,13 @@ pub const ROUTE: ClassicalRoute = ClassicalRoute {
     fit,
 };
 
-/// First radius, in lengths of the scaled start.
+/// First trust radius, in lengths of the scaled start.
 const FIRST_RADIUS: f64 = 10.0;
 
-/// Share of the predicted gain that a step must bring.
+/// Smallest accepted gain of a step, as a share of the predicted gain.
 const LEAST_GAIN: f64 = 1e-4;
 
-/// Relative misfit of a step's length from the radius that the damping may leave.
+/// Largest relative difference between the length of a damped step and the radius.
 const RADIUS_MISFIT: f64 = 0.1;
 
 fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
@@ -42,15 +42,15 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
 
 /// Minimizes a sum of squares from a start.
 ///
-/// Moré's form: the step minimizes ‖r + J·p‖ within ‖D·p‖ ≤ Δ, D the largest lengths that the
-/// Jacobian's columns have had, and Δ follows the gains. Converged means that the residuals' projection
-/// on the tangent space is at most the tolerance times their length, rounding errors apart, with a
-/// Jacobian of full rank: no criterion on the size of a step or a gain, which a valley or a plateau
-/// fulfills just as well. Where gains drown in rounding, steps are accepted by the projection.
+/// The algorithm is Moré's: the step minimizes ‖r + J·p‖ within ‖D·p‖ ≤ Δ. D holds the largest lengths so far
+/// of the Jacobian's columns, and Δ follows the gains. Converged means that the residuals' projection on the
+/// tangent space is at most the tolerance times their length, up to rounding errors, with a Jacobian of full
+/// rank. The size of a step or a gain is no criterion, since both are also small in a valley or on a plateau.
+/// Where gains are below rounding, steps are accepted by the projection.
 ///
 /// # Errors
-/// [`OracleError::NotFinite`] where a residual is not finite at the start, [`OracleError::TooFewRows`]
-/// for fewer residuals than parameters.
+/// [`OracleError::NotFinite`] if a residual is not finite at the start, [`OracleError::TooFewRows`] for fewer
+/// residuals than parameters.
 pub fn minimize(
     problem: &impl LeastSquaresProblem,
     start: &[f64],
@@ -106,7 +106,7 @@ pub fn minimize(
                         *scale = scale.max(*length);
                     }
                 }
-                // Residuals, but no Jacobian: as far away as no residuals.
+                // Residuals without a finite Jacobian are treated as too far away.
                 None => radius *= 0.25,
             }
         }
@@ -118,7 +118,7 @@ pub fn minimize(
     Ok(here.report(x, steps, reached, orthogonality, &limits))
 }
 
-/// A step that brings the residuals closer to orthogonality: Gauss–Newton's, or a damped one.
+/// Returns a step that brings the residuals closer to orthogonality: the Gauss–Newton step, or a damped one.
 fn by_projection(
     problem: &impl LeastSquaresProblem,
     here: &Local,
@@ -135,10 +135,10 @@ fn by_projection(
     })
 }
 
-/// A step, to be subtracted.
+/// Step to be subtracted from the parameters.
 struct Step {
     back: Vec<f64>,
-    /// ‖D·p‖.
+    /// Scaled length ‖D·p‖.
     size: f64,
     damping: f64,
     /// Predicted relative gain in the sum of squares.
@@ -148,8 +148,9 @@ struct Step {
 }
 
 impl Step {
-    /// The step of Moré's algorithm: Gauss–Newton's where it is short enough, else the damping at which
-    /// the step's length is the radius to within a tenth, by Newton's method on the length.
+    /// Returns the step of Moré's algorithm: the Gauss–Newton step if it is short enough, or else the one
+    /// with the damping at which the step's length equals the radius to within a tenth, found by Newton's
+    /// method on the length.
     fn within(here: &Local, scales: &[f64], radius: f64, damping: f64) -> Self {
         // In variables in which the Jacobian has unit columns, D is diag(weights).
         let weights = over(scales, &here.lengths);
@@ -207,13 +208,13 @@ impl Step {
     }
 }
 
-/// Rᵀ·(Qᵀr).
+/// Returns Rᵀ·(Qᵀr).
 fn products(here: &Local) -> Vec<f64> {
     here.factor.triangle.0.iter().map(|column| dot(column, &here.factor.projected)).collect()
 }
 
-/// Minimizes ‖R·z − Qᵀr‖² + damping·‖diag(weights)·z‖²; the solution and the triangle of the stacked
-/// matrix. `None` where it is singular.
+/// Minimizes ‖R·z − Qᵀr‖² + damping·‖diag(weights)·z‖². Returns the solution and the triangle of the stacked
+/// matrix; `None` if it is singular.
 fn damped(here: &Local, weights: &[f64], damping: f64) -> Option<(Vec<f64>, super::linear::Triangle)> {
     let scaled: Vec<f64> = weights.iter().map(|weight| damping.sqrt() * weight).collect();
     let columns = here
@@ -233,7 +234,7 @@ fn damped(here: &Local, weights: &[f64], damping: f64) -> Option<(Vec<f64>, supe
     finite(&solution).then_some((solution, factor.triangle))
 }
 
-/// Minus the relative derivative of a step's length by the damping: ‖R⁻ᵀ·(D²z/‖Dz‖)‖².
+/// Returns minus the relative derivative of a step's length by the damping: ‖R⁻ᵀ·(D²z/‖Dz‖)‖².
 fn decrease(weights: &[f64], z: &[f64], size: f64, triangle: &super::linear::Triangle) -> f64 {
     let direction: Vec<f64> = weights.iter().zip(z).map(|(w, z)| w * (w * z / size)).collect();
     let back = triangle.solve_transposed(&direction);
@@ -253,7 +254,7 @@ mod tests {
 
     const LIMITS: Limits = Limits { tolerance: 1e-10, max_steps: 500 };
 
-    /// y = b₁ + b₂ at every point: only the sum is determined.
+    /// Model y = b₁ + b₂ at every point, so that only the sum is determined.
     struct Undetermined;
 
     impl LeastSquaresProblem for Undetermined {
@@ -279,7 +280,7 @@ mod tests {
         assert!(found.because.contains("wanted"), "{}", found.because);
     }
 
-    /// √x − 1 at three points, not a number left of 0.
+    /// Residuals √x − 1 at three points, NaN for negative x.
     struct Root;
 
     impl LeastSquaresProblem for Root {
@@ -304,7 +305,7 @@ mod tests {
         assert_eq!(minimize(&Root, &[-1.0], LIMITS), Err(OracleError::NotFinite { row: 1 }));
     }
 
-    /// Residuals b − A·p of a problem with curvatures up to 10⁶ apart, at p.
+    /// Linear problem with residuals b − A·p at p and curvatures up to 10⁶ apart.
     struct Linear {
         columns: Vec<Vec<f64>>,
         right: Vec<f64>,
@@ -334,7 +335,8 @@ mod tests {
         })
     }
 
-    /// (JᵀJ + μD²)·p = Jᵀr with ‖D·p‖ at the radius to a tenth, or within it undamped; the gain is the model's.
+    /// A step solves (JᵀJ + μD²)·p = Jᵀr with ‖D·p‖ at the radius to within a tenth, or inside it undamped;
+    /// the gain is the model's.
     #[test]
     fn a_step_is_the_best_within_its_radius() {
         for problem in linear_problems() {
@@ -371,7 +373,7 @@ mod tests {
         }
     }
 
-    /// −d ln‖D·p‖/dμ by differences.
+    /// Compares −d ln‖D·p‖/dμ with differences.
     #[test]
     fn a_step_shortens_with_its_damping_as_said() {
         for problem in linear_problems() {
@@ -388,7 +390,7 @@ mod tests {
         }
     }
 
-    /// A linear problem is solved by the first step that may be as long as it takes.
+    /// A linear problem is solved by the first step that is not limited in length.
     #[test]
     fn a_linear_problem_takes_a_step_or_two() {
         for problem in linear_problems() {

@@ -1,4 +1,4 @@
-//! An envelope's line as a problem for the iterative routes.
+//! Line of an envelope as a problem for the iterative routes.
 
 use super::local::ROUNDING;
 use super::problem::{LeastSquaresProblem, LeastSquaresSolution, SmoothFunction};
@@ -6,14 +6,14 @@ use super::vectors::{UNIT_ROUNDOFF, dot, length, sum};
 use super::{ClassicalFit, Reached};
 use envelope::Envelope;
 
-/// The neutral start of every iterative route: no decay, the mean amplitude.
+/// Neutral start of every iterative route: no decay, and the mean amplitude.
 pub(super) const NEUTRAL: [f64; 2] = [0.0, 0.0];
 
 /// Orthogonality, or relative gradient, at which a search for the line has converged.
 pub(super) const TOLERANCE: f64 = 1e-12;
 
-/// v ≈ a + s·u with u the time over the envelope's duration and v the log amplitude about its mean, in
-/// its standard deviations: range, mean and standard deviation are all it takes from the data. The
+/// Line v ≈ a + s·u. u is the time over the envelope's duration, and v is the log amplitude minus its mean,
+/// in its standard deviations; only this range, mean and standard deviation are taken from the data. The
 /// parameters are s, a.
 pub(super) struct Line {
     pub(super) u: Vec<f64>,
@@ -31,7 +31,7 @@ impl Line {
         let mean = sum(logs) / count;
         let centered: Vec<f64> = logs.iter().map(|y| y - mean).collect();
         let deviation = match length(&centered) / count.sqrt() {
-            // A constant envelope, to rounding.
+            // A constant envelope, up to rounding.
             deviation if deviation <= 4.0 * UNIT_ROUNDOFF * mean.abs() => mean.abs().max(1.0),
             deviation => deviation,
         };
@@ -44,7 +44,7 @@ impl Line {
         }
     }
 
-    /// λ in 1/s and ln A₀ for slope and constant.
+    /// Returns λ in 1/s and ln A₀ for slope and constant.
     pub(super) fn decay(&self, parameters: &[f64]) -> (f64, f64) {
         let (slope, constant) = pair(parameters);
         (-slope * self.deviation / self.duration, constant.mul_add(self.deviation, self.mean))
@@ -79,7 +79,7 @@ impl Line {
     }
 }
 
-/// Slope and constant.
+/// Returns slope and constant.
 pub(super) fn pair(parameters: &[f64]) -> (f64, f64) {
     match parameters {
         &[slope, constant] => (slope, constant),
@@ -97,13 +97,14 @@ impl LeastSquaresProblem for Line {
         vec![self.u.clone(), vec![1.0; self.u.len()]]
     }
 
-    /// Of v with its mean put back: what the mean takes away, rounding keeps.
+    /// Returns the length of v with its mean added back, since the rounding errors are those of the
+    /// uncentered data.
     fn data_length(&self) -> f64 {
         length(&self.v) + (self.v.len() as f64).sqrt() * (self.mean / self.deviation).abs()
     }
 }
 
-/// The sum of squares.
+/// Sum of squares.
 impl SmoothFunction for Line {
     fn value_and_gradient(&self, parameters: &[f64]) -> (f64, Vec<f64>) {
         let residuals = self.residuals(parameters);
@@ -113,7 +114,7 @@ impl SmoothFunction for Line {
 
     fn relative_gradient(&self, parameters: &[f64], gradient: &[f64]) -> f64 {
         let (slope, constant) = pair(gradient);
-        // What rounding errors of the data leave of the gradient counts as the tolerance.
+        // The part of the gradient that comes from rounding of the data counts as the tolerance.
         let rounding = ROUNDING * UNIT_ROUNDOFF * self.data_length() / TOLERANCE;
         let residual = 2.0 * (length(&self.residuals(parameters)) + rounding);
         let count = (self.u.len() as f64).sqrt();

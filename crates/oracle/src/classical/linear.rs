@@ -1,4 +1,4 @@
-//! What the linear routes share: scaling, triangles, and the promise of digits.
+//! Shared parts of the linear routes: scaling, triangles, and the promise of digits.
 
 use super::jacobi::singular_values;
 use super::vectors::{UNIT_ROUNDOFF, dot, finite, length};
@@ -8,20 +8,20 @@ use crate::certified::check;
 use crate::error::OracleError;
 use envelope::Envelope;
 
-/// Digits of a double.
+/// Significant decimal digits of a double.
 const MOST_DIGITS: f64 = 15.65;
 
-/// Roundings on the way to the scaled columns and back.
+/// Number of roundings in scaling the columns and scaling back.
 const SCALING: f64 = 4.0;
 
-/// A linear least-squares fit in plain double precision.
+/// Linear least-squares fit in plain double precision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearSolution {
     /// Coefficients, in the order of the columns.
     pub coefficients: Vec<f64>,
-    /// Their standard errors under independent residuals of one variance.
+    /// Standard errors of the coefficients, for independent residuals of one variance.
     pub std_errors: Vec<f64>,
-    /// √(RSS / (rows − columns)).
+    /// Standard deviation of the residuals, √(RSS / (rows − columns)).
     pub residual_std_dev: f64,
     /// Two-norm condition number of the design matrix with columns scaled to length one.
     pub condition: f64,
@@ -29,7 +29,7 @@ pub struct LinearSolution {
     pub promised_digits: f64,
 }
 
-/// A design matrix whose columns were divided by their lengths.
+/// Design matrix whose columns were divided by their lengths.
 pub(super) struct Scaled {
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) lengths: Vec<f64>,
@@ -54,17 +54,17 @@ pub(super) fn singular() -> OracleError {
     OracleError::IllConditioned { promised: 0.0, condition: f64::INFINITY }
 }
 
-/// An upper triangle R by columns: column j holds rows 0 to j.
+/// Upper triangle R by columns: column j holds rows 0 to j.
 #[derive(Debug, Clone)]
 pub(super) struct Triangle(pub(super) Vec<Vec<f64>>);
 
 impl Triangle {
-    /// Whether a diagonal entry is zero.
+    /// Returns `true` if a diagonal entry is zero.
     pub(super) fn is_singular(&self) -> bool {
         self.0.iter().any(|column| column.last().is_none_or(|diagonal| *diagonal == 0.0))
     }
 
-    /// Solves R·x = b, `b` as long as R has columns.
+    /// Solves R·x = b, with `b` as long as the number of columns of R.
     pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut rest = b.to_vec();
         let mut solution = Vec::with_capacity(rest.len());
@@ -94,12 +94,12 @@ impl Triangle {
         solution
     }
 
-    /// Rows of the inverse: row i is R⁻ᵀ·eᵢ.
+    /// Returns the rows of the inverse: row i is R⁻ᵀ·eᵢ.
     pub(super) fn inverse_rows(&self) -> Vec<Vec<f64>> {
         super::vectors::diagonal(&vec![1.0; self.0.len()]).map(|unit| self.solve_transposed(&unit)).collect()
     }
 
-    /// The columns with the zeros below the diagonal.
+    /// Returns the columns, including the zeros below the diagonal.
     pub(super) fn square(&self) -> Vec<Vec<f64>> {
         let size = self.0.len();
         self.0
@@ -108,7 +108,7 @@ impl Triangle {
             .collect()
     }
 
-    /// Two-norm condition number with columns scaled to length one; infinite where singular.
+    /// Returns the two-norm condition number with columns scaled to length one; infinite if R is singular.
     pub(super) fn condition(&self) -> f64 {
         if self.is_singular() || !self.0.iter().all(|column| finite(column)) {
             return f64::INFINITY;
@@ -122,23 +122,23 @@ impl Triangle {
     }
 }
 
-/// Largest over smallest.
+/// Returns the ratio of the largest to the smallest value.
 pub(super) fn ratio(values: &[f64]) -> f64 {
     let largest = values.iter().copied().fold(0.0, f64::max);
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     if smallest > 0.0 { largest / smallest } else { f64::INFINITY }
 }
 
-/// How rounding errors enter.
+/// Effect of rounding errors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stability {
-    /// As small relative changes of each column: orthogonal transformations, and centered sums.
+    /// Small relative changes of each column: orthogonal transformations, and centered sums.
     Orthogonal,
-    /// As changes of the matrix of normal equations.
+    /// Changes of the matrix of the normal equations.
     NormalEquations,
 }
 
-/// A solution of the scaled problem and what its errors are told from.
+/// Solution of the scaled problem, with the data for its error bounds.
 pub(super) struct Solved<'a> {
     pub(super) lengths: &'a [f64],
     /// Coefficients of the scaled columns.
@@ -149,13 +149,13 @@ pub(super) struct Solved<'a> {
     pub(super) stability: Stability,
 }
 
-/// Turns a solution of the scaled problem into one of the given problem, with its promise.
+/// Converts a solution of the scaled problem to one of the given problem, with its promise.
 ///
-/// For each coefficient x of the scaled columns the error is at most c·u·(‖Mᵢ‖·‖x‖₁ + ‖(AᵀA)⁻¹ᵢ‖₁·‖r‖)
-/// by orthogonal transformations, whose rounding is a relative change of c·u in each column, and
-/// c·u·‖(AᵀA)⁻¹ᵢ‖₁·(‖x‖₁ + ‖y‖) by the normal equations; r are the residuals, and c = 1 + √rows stands
-/// for the random walk of rounding errors. That is an upper bound on every one of NIST's linear sets and
-/// on thousands of random ones (in the tests), not a theorem: the theorem has c proportional to
+/// The error of each coefficient x of the scaled columns is at most c·u·(‖Mᵢ‖·‖x‖₁ + ‖(AᵀA)⁻¹ᵢ‖₁·‖r‖) for
+/// orthogonal transformations, whose rounding is a relative change of c·u in each column. For the normal
+/// equations it is at most c·u·‖(AᵀA)⁻¹ᵢ‖₁·(‖x‖₁ + ‖y‖). Here r are the residuals, and c = 1 + √rows models
+/// the random walk of rounding errors. This is an upper bound on every one of NIST's linear sets and on
+/// thousands of random ones (in the tests). It is not a theorem: the theorem has c proportional to
 /// rows·columns.
 ///
 /// Reference: Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., SIAM 2002), section 20.
@@ -189,8 +189,8 @@ pub(super) fn finish(columns: &[&[f64]], y: &[f64], solved: Solved) -> Result<Li
     Ok(LinearSolution { coefficients, std_errors, residual_std_dev, condition, promised_digits })
 }
 
-/// Digits that the bounds leave: of the vector of coefficients as a whole, and of each coefficient that
-/// exceeds its bound.
+/// Returns the digits that the bounds leave: for the vector of coefficients as a whole, and for each
+/// coefficient that exceeds its bound.
 fn promise(scaled: &[f64], bounds: impl Iterator<Item = f64>) -> f64 {
     let norm = length(scaled);
     let worst = scaled
@@ -215,7 +215,7 @@ pub(super) fn fit_line(
     line_from(envelope, &solution)
 }
 
-/// The decay that a line's constant and slope stand for.
+/// Returns the decay for a line's constant and slope.
 pub(super) fn line_from(envelope: &Envelope, solution: &LinearSolution) -> Result<ClassicalFit, OracleError> {
     let (&[log_amplitude, slope], &[_, std_error]) =
         (solution.coefficients.as_slice(), solution.std_errors.as_slice())

@@ -1,4 +1,4 @@
-//! A least-squares problem at one point: residuals, Jacobian, and how orthogonal they are.
+//! Least-squares problem at one point: residuals, Jacobian, and their orthogonality.
 
 use super::Reached;
 use super::problem::{LeastSquaresProblem, LeastSquaresSolution, Limits};
@@ -6,31 +6,31 @@ use super::qr::{Factor, factorize};
 use super::vectors::{UNIT_ROUNDOFF, finite, length, times};
 use crate::error::OracleError;
 
-/// Above this condition number of the unit-column Jacobian, orthogonality says nothing about where the
-/// parameters are, and no search has converged.
+/// Condition number of the unit-column Jacobian above which orthogonality does not determine the parameters,
+/// so that no search counts as converged.
 const WORST_CONDITION: f64 = 1e12;
 
 /// Rounding errors of residuals, in units of the roundoff of the data.
 pub(super) const ROUNDING: f64 = 8.0;
 
-/// Residuals and Jacobian at one point, the Jacobian as Q·R·diag(lengths).
+/// Residuals and Jacobian at one point, with the Jacobian as Q·R·diag(lengths).
 pub(super) struct Local {
     /// Length of the residuals.
     pub(super) size: f64,
     /// Lengths of the Jacobian's columns; 1 for a column of zeros.
     pub(super) lengths: Vec<f64>,
-    /// Factors of the Jacobian with unit columns; the right-hand side are the residuals.
+    /// Factors of the Jacobian with unit columns; the right-hand side is the residuals.
     pub(super) factor: Factor,
-    /// Length that orthogonality is relative to: that of the residuals, plus rounding over tolerance.
+    /// Reference length of the orthogonality: the length of the residuals, plus rounding over tolerance.
     pub(super) reference: f64,
-    /// Part of the residuals in the tangent space over the reference.
+    /// Length of the residuals' part in the tangent space, over the reference.
     pub(super) orthogonality: f64,
     /// Condition number of the Jacobian with unit columns.
     pub(super) condition: f64,
 }
 
 impl Local {
-    /// Evaluates a problem; `None` where a number is not finite.
+    /// Evaluates a problem; `None` if a number is not finite.
     pub(super) fn evaluate(problem: &impl LeastSquaresProblem, at: &[f64], limits: &Limits) -> Option<Self> {
         let residuals = problem.residuals(at);
         let mut columns = problem.jacobian(at);
@@ -79,7 +79,7 @@ impl Local {
         Self::evaluate(problem, at, limits).ok_or(OracleError::NotFinite { row: 1 })
     }
 
-    /// Half the gradient of the sum of squares: Jᵀr.
+    /// Returns half the gradient of the sum of squares, Jᵀr.
     pub(super) fn gradient(&self) -> Vec<f64> {
         let products: Vec<f64> = self
             .factor
@@ -91,17 +91,17 @@ impl Local {
         times(&products, &self.lengths)
     }
 
-    /// Whether an orthogonality counts as reached here.
+    /// Returns `true` if an orthogonality counts as converged at this point.
     pub(super) fn is_stationary(&self, orthogonality: f64, limits: &Limits) -> bool {
         orthogonality <= limits.tolerance && self.condition < WORST_CONDITION
     }
 
-    /// Relative gain in the sum of squares below which it cannot be told from rounding.
+    /// Returns the relative gain in the sum of squares below which it cannot be told from rounding.
     pub(super) fn flat(&self, problem: &impl LeastSquaresProblem) -> f64 {
         (4.0 * ROUNDING * UNIT_ROUNDOFF * problem.data_length() / self.size).clamp(1e-12, 0.1)
     }
 
-    /// The solution that a search reports from here.
+    /// Returns the solution that a search reports from this point.
     pub(super) fn report(
         &self,
         parameters: Vec<f64>,

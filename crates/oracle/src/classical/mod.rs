@@ -1,10 +1,10 @@
-//! The paper's eleven classical methods, each by its own arithmetic.
+//! The paper's eleven classical methods, each with its own arithmetic.
 //!
-//! All eleven minimize Σ(ln A₀ − λ·t − ln A)². They differ in how, and so in how many digits they
-//! keep: [`CLASSICAL`] lists them in the paper's order. The linear ones take any design matrix and say
-//! how many digits they promise; the iterative ones take any problem that implements
-//! [`LeastSquaresProblem`] or [`SmoothFunction`] and say what they reached. None of them knows of
-//! [`crate::least_squares`], which they are measured against.
+//! All eleven minimize Σ(ln A₀ − λ·t − ln A)². They differ in the algorithm, and so in the number of digits
+//! that they keep: [`CLASSICAL`] lists them in the paper's order. The linear ones take any design matrix and
+//! state how many digits they promise. The iterative ones take any problem that implements
+//! [`LeastSquaresProblem`] or [`SmoothFunction`] and state what they reached. None of them uses
+//! [`crate::least_squares`], against which they are measured.
 
 mod jacobi;
 mod line;
@@ -37,7 +37,7 @@ pub use prediction::LinePrediction;
 pub use problem::{LeastSquaresProblem, LeastSquaresSolution, Limits, Minimum, SmoothFunction};
 pub use route::{ClassicalFit, ClassicalRoute, Reached};
 
-/// The paper's classical methods, by number.
+/// Classical methods of the paper, by number.
 pub const CLASSICAL: &[ClassicalRoute] = &[
     ols::ROUTE,
     polynomial_fit::ROUTE,

@@ -22,14 +22,14 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     fit_line(envelope, least_squares)
 }
 
-/// Least squares of `y` on the columns of a design matrix, each as long as `y`, by AᵀA = RᵀR.
+/// Fits `y` by least squares on the columns of a design matrix, each as long as `y`, by AᵀA = RᵀR.
 ///
-/// Columns are scaled to length one first, which nearly minimizes the condition number (van der Sluis
-/// 1969). The matrix is factorized, never inverted, whatever the paper's formula (AᵀA)⁻¹Aᵀb says.
+/// Columns are scaled to length one first, which nearly minimizes the condition number (van der Sluis 1969).
+/// The matrix is factorized and never inverted, although the paper's formula is (AᵀA)⁻¹Aᵀb.
 ///
 /// # Errors
-/// [`OracleError`] for unusable input, and where fewer than four digits can be promised: at condition
-/// numbers above some 10⁵.
+/// [`OracleError`] for unusable input, or if fewer than four digits can be promised: at condition numbers
+/// above about 10⁵.
 pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, OracleError> {
     let scaled = scale(columns, y)?;
     let triangle = cholesky(&scaled.columns)?;
@@ -44,7 +44,7 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, Or
     finish(columns, y, solved)
 }
 
-/// R with RᵀR = AᵀA for unit columns. A pivot that is nothing but rounding is refused.
+/// Returns R with RᵀR = AᵀA for unit columns. A pivot that is nothing but rounding is refused.
 fn cholesky(columns: &[Vec<f64>]) -> Result<Triangle, OracleError> {
     let mut triangle = Triangle(Vec::new());
     // Without columns there is no noise, and nothing to refuse.

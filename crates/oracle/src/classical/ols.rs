@@ -25,13 +25,14 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     line_from(envelope, &line(envelope.times_s(), envelope.log_amplitudes())?)
 }
 
-/// The line y = a + b·x with b = Σ(x − x̄)(y − ȳ)/Σ(x − x̄)², a = ȳ − b·x̄; coefficients in the order a, b.
+/// Fits the line y = a + b·x with b = Σ(x − x̄)(y − ȳ)/Σ(x − x̄)² and a = ȳ − b·x̄; coefficients in the order
+/// a, b.
 ///
-/// The sums are taken about the means in a second pass, as `scipy.stats.linregress` does: the one-pass
-/// formula n·Σxy − Σx·Σy loses digits to cancellation.
+/// The sums are taken about the means in a second pass, as in `scipy.stats.linregress`: the one-pass formula
+/// n·Σxy − Σx·Σy loses digits to cancellation.
 ///
 /// # Errors
-/// [`OracleError`] for unusable input, and where fewer than four digits can be promised.
+/// [`OracleError`] for unusable input, or if fewer than four digits can be promised.
 pub fn line(x: &[f64], y: &[f64]) -> Result<LinearSolution, OracleError> {
     let ones = vec![1.0; y.len()];
     let columns = [ones.as_slice(), x];
@@ -50,7 +51,7 @@ pub fn line(x: &[f64], y: &[f64]) -> Result<LinearSolution, OracleError> {
     // Cosine and sine of the angle between the constant and x.
     let size = length(x);
     let (cosine, sine) = (mean_x * count.sqrt() / size, spread / size);
-    // Of unit columns at that angle (AᵀA)⁻¹ = M·Mᵀ with M = [[1, −cot], [0, 1/sin]].
+    // For unit columns at that angle, (AᵀA)⁻¹ = M·Mᵀ with M = [[1, −cot], [0, 1/sin]].
     let inverse_rows = vec![vec![1.0, -cosine / sine], vec![0.0, 1.0 / sine]];
     // κ² = (1 + |cos|)/(1 − |cos|) = ((1 + |cos|)/sin)².
     let condition = (1.0 + cosine.abs()) / sine;
@@ -60,7 +61,7 @@ pub fn line(x: &[f64], y: &[f64]) -> Result<LinearSolution, OracleError> {
     finish(&columns, y, solved)
 }
 
-/// Mean, with the rounding error of the first pass taken out by a second.
+/// Returns the mean; a second pass removes the rounding error of the first.
 fn mean(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let first = sum(values) / count;

@@ -1,4 +1,4 @@
-//! Method 2: a polynomial fit as `numpy.polyfit` does it.
+//! Method 2: a polynomial fit as in `numpy.polyfit`.
 
 use super::jacobi::{decompose, transpose};
 use super::linear::{LinearSolution, Solved, Stability, Triangle, finish, line_from, ratio, scale, singular};
@@ -27,15 +27,15 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     line_from(envelope, &polynomial(envelope.times_s(), envelope.log_amplitudes(), 1)?)
 }
 
-/// Least squares of `y` on the powers 0 to `degree` of `x`; coefficients from the lowest power up.
+/// Fits `y` by least squares on the powers 0 to `degree` of `x`; coefficients from the lowest power up.
 ///
-/// As `numpy.polyfit` does it: columns of the Vandermonde matrix divided by their lengths, singular
-/// values of it, and those below rows·ε of the largest taken for zero. The rows enter one after the
-/// other by Givens rotations, and the singular values are those of the triangle.
+/// The steps are those of `numpy.polyfit`: the columns of the Vandermonde matrix are divided by their
+/// lengths, and singular values below rows·ε of the largest count as zero. The rows enter one after the other
+/// by Givens rotations, and the singular values are those of the triangle.
 ///
 /// # Errors
-/// [`OracleError`] for unusable input, where a singular value counts as zero (numpy drops it and
-/// warns), and where fewer than four digits can be promised.
+/// [`OracleError`] for unusable input, if a singular value counts as zero (numpy drops it and warns), or if
+/// fewer than four digits can be promised.
 pub fn polynomial(x: &[f64], y: &[f64], degree: usize) -> Result<LinearSolution, OracleError> {
     let mut powers = vec![vec![1.0; x.len()]];
     for _ in 0..degree {
@@ -68,10 +68,10 @@ pub fn polynomial(x: &[f64], y: &[f64], degree: usize) -> Result<LinearSolution,
     finish(&columns, y, solved)
 }
 
-/// Triangle and transformed right-hand side, row by row.
+/// Returns the triangle and the transformed right-hand side, built row by row.
 fn rotate_rows(columns: &[Vec<f64>], y: &[f64]) -> (Triangle, Vec<f64>) {
     let size = columns.len();
-    // Row i of the triangle from its diagonal on.
+    // Row i of the triangle starts at its diagonal.
     let mut rows: Vec<Vec<f64>> = (0..size).map(|row| vec![0.0; size - row]).collect();
     let mut right = vec![0.0; size];
     for (at, &value) in y.iter().enumerate() {

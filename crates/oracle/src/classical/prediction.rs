@@ -1,26 +1,26 @@
-//! What a line says of a peak that it has not seen.
+//! Predictions of a line for peaks that were not fitted.
 
 use super::ClassicalFit;
 use super::vectors::{dot, length, sum};
 use envelope::Envelope;
 
-/// ln A of a line at a time, and how far a measured peak scatters about it.
+/// ln A of a line at a time, with the scatter of a measured peak about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinePrediction {
-    /// ln A₀ − λ·t.
+    /// Value of ln A₀ − λ·t, with the amplitude in the record's unit.
     pub log_amplitude: f64,
-    /// Standard deviation of a **measured** ln A about it, scatter and the line's own uncertainty
-    /// together; `None` where two peaks or fewer leave no degree of freedom, or it is not finite.
+    /// Standard deviation of a **measured** ln A about the line, from scatter and the line's own uncertainty
+    /// together; `None` if two peaks or fewer leave no degree of freedom, or if it is not finite.
     pub std_error: Option<f64>,
 }
 
 impl ClassicalFit {
-    /// The line at times in seconds after the first peak, within the envelope or beyond it, one
-    /// prediction for each.
+    /// Predicts by the line at times in seconds after the first peak, within the envelope or beyond it, one
+    /// prediction per time.
     ///
-    /// With n peaks, their mean time t̄ and Sxx = Σ(tᵢ − t̄)², the variance of a measured ln A is
-    /// s²·(1 + 1/n + (t − t̄)²/Sxx) under independent scatter of one variance, s² = Σrᵢ²/(n − 2) from this
-    /// method's own residuals r. `envelope` is the one that was fitted.
+    /// With n peaks, their mean time t̄ and Sxx = Σ(tᵢ − t̄)², a measured ln A has the variance
+    /// s²·(1 + 1/n + (t − t̄)²/Sxx) if the scatter is independent and of one variance. Here s² = Σrᵢ²/(n − 2)
+    /// from this method's own residuals r. `envelope` is the one that was fitted.
     ///
     /// # Reference
     /// Draper, Smith, Applied Regression Analysis (3rd ed., Wiley 1998), section 3.1.
@@ -33,7 +33,7 @@ impl ClassicalFit {
         let mean = sum(times) / count;
         let centered: Vec<f64> = times.iter().map(|time| time - mean).collect();
         let scatter = (dot(&residuals, &residuals) / (count - 2.0)).sqrt();
-        // Lengths before squares: times of 1e-200 s have no sum of squares.
+        // Lengths before squares: the squares of times of 1e-200 s underflow.
         let spread = length(&centered);
         let std_error = |time: f64| {
             let leverage = 1.0 / count + ((time - mean) / spread).powi(2);
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn intervals_hold_fresh_peaks_as_often_as_they_say() {
         let mut generator = Seed::new(8).generator();
-        // A sum of twelve uniform numbers is Gaussian enough.
+        // A sum of twelve uniform numbers is close enough to a Gaussian.
         let mut scatter = || 0.1 * ((0..12).map(|_| generator.random::<f64>()).sum::<f64>() - 6.0);
         let truth = |time: f64| -0.6 - 0.19 * time;
         let trials: u32 = 4000;
@@ -97,16 +97,16 @@ mod tests {
                 let times: Vec<f64> = (0..60).map(|i| 0.3 * f64::from(i)).collect();
                 let logs = times.iter().map(|&time| truth(time) + scatter()).collect();
                 let envelope = Envelope::new(times, logs, 21.8).unwrap();
-                // From within the record to as far again beyond it.
+                // Times from within the record to one record length beyond its end.
                 let asked = 36.0 * f64::from(*trial) / f64::from(trials);
                 let prediction = fitted("ols", &envelope).predictions(&envelope, &[asked])[0];
                 let off = truth(asked) + scatter() - prediction.log_amplitude;
-                // Student's t with 58 degrees of freedom.
+                // Quantile of Student's t with 58 degrees of freedom.
                 off.abs() <= 2.0017 * prediction.std_error.unwrap()
             })
             .count();
         let share = held as f64 / f64::from(trials);
-        // Four standard deviations of a share of 4000.
+        // The bounds are four standard deviations of a share of 4000.
         assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(trials)).sqrt(), "{share}");
     }
 

@@ -1,4 +1,4 @@
-//! Method 4: QR decomposition by Householder's reflections.
+//! Method 4: QR decomposition by Householder reflections.
 
 use super::linear::{LinearSolution, Solved, Stability, Triangle, finish, fit_line, scale, singular};
 use super::vectors::{add_scaled, dot, length};
@@ -22,10 +22,10 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     fit_line(envelope, least_squares)
 }
 
-/// Least squares of `y` on the columns of a design matrix, each as long as `y`, by R·x = (Qᵀy).
+/// Fits `y` by least squares on the columns of a design matrix, each as long as `y`, by R·x = Qᵀy.
 ///
 /// # Errors
-/// [`OracleError`] for unusable input, and where fewer than four digits can be promised.
+/// [`OracleError`] for unusable input, or if fewer than four digits can be promised.
 pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, OracleError> {
     let scaled = scale(columns, y)?;
     let factor = factorize(scaled.columns, y.to_vec());
@@ -42,16 +42,17 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, Or
     finish(columns, y, solved)
 }
 
-/// A = Q·R and the right-hand side in the basis of Q.
+/// Factors A = Q·R, with the right-hand side in the basis of Q.
 pub(super) struct Factor {
     pub(super) triangle: Triangle,
-    /// The part of Qᵀy in the columns' span.
+    /// Part of Qᵀy in the columns' span.
     pub(super) projected: Vec<f64>,
-    /// The rest: as long as the residuals of the least-squares solution.
+    /// Rest of Qᵀy: as long as the residuals of the least-squares solution.
     pub(super) rest: Vec<f64>,
 }
 
-/// Reflects the columns, at least as long as there are columns, one after the other onto the axes.
+/// Reflects the columns one after the other onto the axes. Each column is at least as long as the number of
+/// columns.
 pub(super) fn factorize(mut columns: Vec<Vec<f64>>, mut y: Vec<f64>) -> Factor {
     for step in 0..columns.len() {
         let (done, active) = columns.split_at_mut(step + 1);
@@ -59,7 +60,7 @@ pub(super) fn factorize(mut columns: Vec<Vec<f64>>, mut y: Vec<f64>) -> Factor {
         let mut normal: Vec<f64> = pivot.iter().skip(step).copied().collect();
         let size = length(&normal);
         let Some(head) = normal.first_mut() else { break };
-        // The sign that adds to the head instead of canceling.
+        // The sign is chosen so that the head grows and does not cancel.
         let image = -size.copysign(*head);
         *head -= image;
         let square = dot(&normal, &normal);

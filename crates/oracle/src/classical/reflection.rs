@@ -1,16 +1,16 @@
-//! Steps of the trust-region reflective method: the subproblem in the ball, and what the bounds leave of
+//! Steps of the trust-region reflective method: the subproblem in the ball, and the effect of the bounds on
 //! its solution.
 
 use super::jacobi::decompose;
 use super::vectors::{add_scaled, combine, dot, length, times};
 
-/// m(s) = ½‖B·s‖² + g·s, with the singular values of B.
+/// Model m(s) = ½‖B·s‖² + g·s, with the singular values of B.
 pub(super) struct Model {
     columns: Vec<Vec<f64>>,
     gradient: Vec<f64>,
     right: Vec<Vec<f64>>,
     values: Vec<f64>,
-    /// Vᵀg.
+    /// The product Vᵀg.
     turned: Vec<f64>,
 }
 
@@ -25,13 +25,13 @@ impl Model {
         &self.gradient
     }
 
-    /// The model at a step; negative is a gain.
+    /// Returns the model at a step; a negative value is a gain.
     pub(super) fn value(&self, step: &[f64]) -> f64 {
         let image = combine(&self.columns, step);
         dot(&image, &image).mul_add(0.5, dot(&self.gradient, step))
     }
 
-    /// The model's minimum in the ball, by Newton's method on the length of −V·(Vᵀg/(σ² + α)).
+    /// Returns the model's minimum in the ball, by Newton's method on the length of −V·(Vᵀg/(σ² + α)).
     pub(super) fn within(&self, radius: f64) -> Vec<f64> {
         let largest = self.values.iter().copied().fold(0.0, f64::max);
         let smallest = self.values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -64,7 +64,7 @@ impl Model {
             damping += misfit / slope * size / radius;
         }
         let mut step = self.step(damping);
-        // On the sphere itself, so that the next damping starts no further out.
+        // The step is put on the sphere, so that the next damping does not start further out.
         let size = length(&step);
         if size > 0.0 {
             step.iter_mut().for_each(|x| *x *= radius / size);
@@ -82,7 +82,7 @@ impl Model {
         combine(&self.right, &shares)
     }
 
-    /// Minus the derivative of the step's length by the damping.
+    /// Returns minus the derivative of the step's length by the damping.
     fn decrease(&self, damping: f64, size: f64) -> f64 {
         self.turned
             .iter()
@@ -92,7 +92,8 @@ impl Model {
             / size
     }
 
-    /// The factor in low..=high of `direction` that minimizes the model from `from` on, and the value.
+    /// Returns the factor in low..=high of `direction` that minimizes the model from `from` on, and the value
+    /// there.
     fn along(&self, from: &[f64], direction: &[f64], low: f64, high: f64) -> (f64, f64) {
         let image = combine(&self.columns, direction);
         let base = combine(&self.columns, from);
@@ -106,7 +107,7 @@ impl Model {
     }
 }
 
-/// A box.
+/// Box of lower and upper bounds.
 pub(super) struct Walls<'a> {
     pub(super) low: &'a [f64],
     pub(super) high: &'a [f64],
@@ -117,7 +118,7 @@ impl Walls<'_> {
         x.iter().zip(self.low.iter().zip(self.high)).all(|(x, (low, high))| low < x && x < high)
     }
 
-    /// How far along a direction the box goes, and which walls end it.
+    /// Returns the largest factor of a direction that stays in the box, and which walls limit it.
     fn reach(&self, x: &[f64], direction: &[f64]) -> (f64, Vec<bool>) {
         let room: Vec<f64> = x
             .iter()
@@ -133,21 +134,22 @@ impl Walls<'_> {
         (least, room.iter().map(|room| *room == least).collect())
     }
 
-    /// The nearest point strictly inside.
+    /// Returns the nearest point strictly inside.
     pub(super) fn inside(&self, x: &[f64]) -> Vec<f64> {
         x.iter()
             .zip(self.low.iter().zip(self.high))
             .map(|(x, (low, high))| {
                 let inner = x.max(low.next_up()).min(high.next_down());
-                // Bounds next to each other leave nothing strictly between.
+                // Adjacent bounds have no number strictly between them.
                 if *low < inner && inner < *high { inner } else { f64::midpoint(*low, *high) }
             })
             .collect()
     }
 }
 
-/// The best of three steps in scaled variables s (x moves by d∘s): the trust-region step cut short of
-/// the walls, the same reflected at the first wall, and the gradient's. Gives s and the model's value.
+/// Selects the best of three steps in scaled variables s (x moves by d∘s): the trust-region step cut off
+/// before the walls, the same step reflected at the first wall, and the step along the gradient. Returns s
+/// and the model's value.
 ///
 /// Reference: Branch, Coleman, Li, SIAM J. Sci. Comput. 21 (1999) 1, section 4.
 pub(super) fn select(
@@ -207,7 +209,7 @@ pub(super) fn select(
     (best.1, best.0)
 }
 
-/// Where a ray from inside a ball leaves it.
+/// Returns the factor of a direction at which a ray from inside a ball leaves it.
 fn exit(from: &[f64], direction: &[f64], radius: f64) -> f64 {
     let (a, b) = (dot(direction, direction), dot(from, direction));
     let c = dot(from, from) - radius * radius;
@@ -252,7 +254,7 @@ mod tests {
         }
     }
 
-    /// Models of two to four parameters, the curvatures up to 10⁴ apart.
+    /// Models of two to four parameters, with curvatures up to 10⁴ apart.
     fn models() -> Vec<Model> {
         let mut generator = Seed::new(12).generator();
         (0..200)
@@ -277,7 +279,7 @@ mod tests {
         assert_eq!(model.value(&[0.0, 0.0]), 0.0);
     }
 
-    /// (BᵀB + α)·s = −g, and −d‖s‖/dα.
+    /// Damped steps solve (BᵀB + α)·s = −g, and −d‖s‖/dα is right.
     #[test]
     fn damped_steps_solve_their_equations_and_shorten_as_said() {
         for model in models() {
@@ -297,7 +299,8 @@ mod tests {
         }
     }
 
-    /// On the sphere, and no other point of the ball is better by more than the hundredth that the radius is met to.
+    /// The step lies on the sphere, and no other point of the ball is better by more than the hundredth that
+    /// the radius is met to.
     #[test]
     fn the_step_in_the_ball_is_the_best_in_it() {
         let mut generator = Seed::new(13).generator();
@@ -379,8 +382,8 @@ mod tests {
         assert_eq!(BOX.reach(&[1.0, 0.5], &[0.0, 0.0]).0, f64::INFINITY);
     }
 
-    /// Inside box and ball, the model's value as said, and no worse than the step cut short of the wall or
-    /// any point on the gradient's ray.
+    /// The chosen step lies inside box and ball, has the stated value, and is no worse than the step cut off
+    /// before the wall or any point on the gradient's ray.
     #[test]
     fn the_chosen_step_is_the_best_of_those_that_stay_inside() {
         const SHARE: f64 = 0.995;
@@ -419,16 +422,17 @@ mod tests {
         assert!(cut_short > 100 && better_than_cut > 0, "{cut_short} {better_than_cut}");
     }
 
-    /// m(s) = ½|s|² + g·s with a wall at s₁ = 1: straight to the wall and off it again.
+    /// For m(s) = ½|s|² + g·s with a wall at s₁ = 1, the step goes straight to the wall and is reflected
+    /// there.
     #[test]
     fn a_step_is_reflected_at_the_wall() {
         let model = Model::new(vec![vec![1.0, 0.0], vec![0.0, 1.0]], vec![-4.0, -4.0]);
         let walls = Walls { low: &[f64::NEG_INFINITY; 2], high: &[1.0, f64::INFINITY] };
         let (step, value) = select(&model, &walls, &[0.0, 0.0], &[1.0, 1.0], 1e3, 0.995);
-        // From (1, 1) along (−4, 4) the model only rises: all that is left is to stay next to the wall.
+        // From (1, 1) along (−4, 4) the model only rises: the best step ends next to the wall.
         assert!(step.iter().all(|s| (s - 1.0).abs() < 1e-3) && step[0] < 1.0, "{step:?}");
         assert!((value + 7.0).abs() < 1e-3, "{value}");
-        // A steeper slope along the wall is followed further.
+        // With a steeper slope along the wall the reflected step goes further.
         let model = Model::new(vec![vec![1.0, 0.0], vec![0.0, 1.0]], vec![-4.0, -12.0]);
         let (step, _) = select(&model, &walls, &[0.0, 0.0], &[1.0, 1.0], 1e3, 0.995);
         // From (1, 3) along (−4, 12): slope −(1 − 4)·4 + (3 − 12)·12 = −96, curvature 160: t = 0.6.

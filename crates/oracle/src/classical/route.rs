@@ -1,38 +1,38 @@
-//! What a classical method is and what it gives.
+//! Classical method and its result.
 
 use crate::error::OracleError;
 use envelope::Envelope;
 use seed::Seed;
 
-/// What a method reached.
+/// State in which a method ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reached {
-    /// The residuals are orthogonal to the model's tangent space to within the stated tolerance; for a
-    /// direct method, the digits are promised.
+    /// The residuals are orthogonal to the model's tangent space to within the stated tolerance; for a direct
+    /// method, the digits are promised.
     Converged,
-    /// The budget of steps ended first.
+    /// The budget of steps was spent before convergence.
     BudgetSpent,
     /// No step improves the fit, and the residuals are not orthogonal either.
     Stalled,
 }
 
-/// What a classical method makes of an envelope.
+/// Result of a classical method on an envelope.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassicalFit {
-    /// λ, in 1/s.
+    /// Decay rate λ, in 1/s.
     pub decay_rate: f64,
-    /// ln A₀, at the first peak.
+    /// ln A₀ at the first peak, with the amplitude in the record's unit.
     pub log_amplitude: f64,
-    /// Standard error of λ under independent residuals of one variance, in 1/s; `None` where the method
-    /// gives none.
+    /// Standard error of λ for independent residuals of one variance, in 1/s; `None` if the method gives
+    /// none.
     pub std_error: Option<f64>,
-    /// Significant digits promised for λ and ln A₀; `None` where the method promises none.
+    /// Significant digits promised for λ and ln A₀; `None` if the method promises none.
     pub promised_digits: Option<f64>,
-    /// Steps taken: iterations, generations, or 1 for a direct method.
+    /// Number of steps taken: iterations, generations, or 1 for a direct method.
     pub steps: u64,
-    /// What was reached.
+    /// State in which the method ended.
     pub reached: Reached,
-    /// Why it stopped there: a sentence with numbers.
+    /// Reason why the method ended, as a sentence with numbers.
     pub because: String,
 }
 
@@ -43,13 +43,13 @@ pub struct ClassicalRoute {
     pub id: &'static str,
     /// Number in the paper's Tables 1 and 4.
     pub paper_number: u8,
-    /// Title.
+    /// Human-readable name.
     pub title: &'static str,
-    /// What it does, in a sentence.
+    /// The method, in one sentence.
     pub summary: &'static str,
-    /// Sources.
+    /// Literature that the method follows.
     pub citations: &'static [&'static str],
-    /// Whether it draws from the seed, so that another seed takes another way.
+    /// `true` if the method draws from the seed, so that another seed gives another computation.
     pub draws: bool,
     /// Fits an envelope.
     pub fit: fn(&Envelope, &Seed) -> Result<ClassicalFit, OracleError>,

@@ -26,10 +26,10 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     fit_line(envelope, least_squares)
 }
 
-/// Least squares of `y` on the columns of a design matrix, each as long as `y`, by x = V·Σ⁻¹·Uᵀy.
+/// Fits `y` by least squares on the columns of a design matrix, each as long as `y`, by x = V·Σ⁻¹·Uᵀy.
 ///
 /// # Errors
-/// [`OracleError`] for unusable input, and where fewer than four digits can be promised.
+/// [`OracleError`] for unusable input, or if fewer than four digits can be promised.
 pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, OracleError> {
     let scaled = scale(columns, y)?;
     let parts = decompose(scaled.columns);

@@ -1,4 +1,4 @@
-//! The eleven routes on envelopes.
+//! Tests of the eleven routes on envelopes.
 
 use super::{CLASSICAL, ClassicalFit, ClassicalRoute, Reached};
 use crate::decay_rate;
@@ -23,12 +23,12 @@ fn even(count: u32, step: f64) -> Vec<f64> {
     (0..count).map(|i| f64::from(i) * step).collect()
 }
 
-/// As many peaks as the paper has, as scattered, and bent as its envelope is.
+/// Returns an envelope with the paper's number of peaks, and with its scatter and bend.
 fn like_the_paper() -> Envelope {
     envelope(&even(69, 0.288), |t| -0.5 - 0.19 * t + 0.15 * (5.0 * t).sin() - 0.002 * (t - 10.0).powi(2))
 }
 
-/// Envelopes with a decay to agree on.
+/// Returns envelopes with a decay that the routes should agree on.
 fn envelopes() -> Vec<(&'static str, Envelope)> {
     let mut generator = Seed::new(4).generator();
     let uneven: Vec<f64> = (0..200)
@@ -51,7 +51,7 @@ fn envelopes() -> Vec<(&'static str, Envelope)> {
     ]
 }
 
-/// Relative error of the decay rate that a route may have.
+/// Returns the relative error of the decay rate allowed for a route.
 fn tolerance(route: &ClassicalRoute) -> f64 {
     match route.paper_number {
         1..=5 | 11 => 1e-12,
@@ -78,7 +78,7 @@ fn all_but_gradient_descent_agree_with_the_certified_route() {
         for route in CLASSICAL.iter().filter(|route| route.id != "gradient-descent") {
             let fit = fit(route, &envelope);
             let error = (fit.decay_rate / certified.decay_rate - 1.0).abs();
-            // A constant of 10³ takes three of the digits that the scatter has.
+            // A constant of 10³ costs three of the digits of the scatter.
             let room = if name == "a large constant" { 100.0 } else { 1.0 };
             assert!(error <= room * tolerance(route), "{} on {name}: {error:e} {fit:?}", route.id);
             let shift = (fit.log_amplitude - certified.log_amplitude).abs();
@@ -128,7 +128,8 @@ fn standard_errors_are_the_certified_ones() {
     }
 }
 
-/// The paper's gradient descent misses by 0.046 %; every other route has to be ten times better.
+/// The paper's gradient descent has an error of 0.046 %; here it is smaller, and every other route has to be
+/// ten times better.
 #[test]
 fn gradient_descent_beats_the_paper_s_and_is_the_worst() {
     let envelope = like_the_paper();

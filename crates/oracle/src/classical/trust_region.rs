@@ -1,4 +1,4 @@
-//! Method 10: the trust-region reflective method, as `scipy.optimize.least_squares` has it.
+//! Method 10: the trust-region reflective method, as in `scipy.optimize.least_squares`.
 
 use super::line::{Line, NEUTRAL, TOLERANCE};
 use super::local::Local;
@@ -31,7 +31,7 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     Ok(line.fit_with_error(minimize(&line, &NEUTRAL, &Bounds::none(2), limits)?))
 }
 
-/// Lower and upper bounds of parameters; infinite where there is none.
+/// Lower and upper bounds of parameters; infinite for an unbounded side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     low: Vec<f64>,
@@ -39,10 +39,10 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Bounds of parameters, in their order.
+    /// Creates bounds of parameters, in their order.
     ///
     /// # Errors
-    /// [`OracleError::Bounds`] where a lower bound is not below its upper one, or one is missing.
+    /// [`OracleError::Bounds`] if a lower bound is not below its upper one, or one is missing.
     pub fn new(low: Vec<f64>, high: Vec<f64>) -> Result<Self, OracleError> {
         let at = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(f64::NAN);
         for index in 0..low.len().max(high.len()) {
@@ -54,27 +54,28 @@ impl Bounds {
         Ok(Self { low, high })
     }
 
-    /// Bounds at −∞ and ∞ for a number of parameters.
+    /// Creates bounds at −∞ and ∞ for a number of parameters.
     #[must_use]
     pub fn none(parameters: usize) -> Self {
         Self { low: vec![f64::NEG_INFINITY; parameters], high: vec![f64::INFINITY; parameters] }
     }
 }
 
-/// Minimizes a sum of squares from a start within bounds; the parameters stay strictly inside.
+/// Minimizes a sum of squares from a start within bounds. The parameters stay strictly inside.
 ///
-/// In the variables of Coleman and Li, scaled by the distance to the bound that the gradient points to,
-/// each step minimizes the Gauss–Newton model in a ball; a step that leaves the box is cut, reflected or
-/// replaced by the gradient's, whichever the model prefers. Further scaled by the largest lengths that
-/// the Jacobian's columns have had (scipy's `x_scale = "jac"`).
+/// The variables are those of Coleman and Li, scaled by the distance to the bound that the descent leads to.
+/// Each step minimizes the Gauss–Newton model in a ball. A step that leaves the box is cut off, reflected or
+/// replaced by the gradient's, whichever the model prefers. The variables are also scaled by the largest
+/// lengths so far of the Jacobian's columns (scipy's `x_scale = "jac"`).
 ///
-/// Converged means the same as for the Levenberg–Marquardt method, the parameters apart that the
-/// gradient presses against a bound so near that reaching it would change the residuals by less than
+/// Converged means the same as for the Levenberg–Marquardt method, except that some parameters do not count:
+/// those so near a bound in the direction of descent that reaching it would change the residuals by less than
 /// the tolerance.
 ///
 /// # Errors
-/// [`OracleError::NotFinite`] where a residual is not finite at the start, [`OracleError::TooFewRows`]
-/// for fewer residuals than parameters, [`OracleError::Bounds`] for another number of bounds.
+/// [`OracleError::NotFinite`] if a residual is not finite at the start, [`OracleError::TooFewRows`] for fewer
+/// residuals than parameters, [`OracleError::Bounds`] if the number of bounds differs from that of the
+/// parameters.
 pub fn minimize(
     problem: &impl LeastSquaresProblem,
     start: &[f64],
@@ -122,7 +123,7 @@ pub fn minimize(
             (there, grown, frame)
         });
         if flat {
-            // The gain drowns in rounding: what counts is the orthogonality.
+            // The gain is below rounding, so that the orthogonality decides.
             match candidate {
                 Some(found) if found.2.orthogonality < frame.orthogonality => {
                     x = next;
@@ -154,12 +155,12 @@ pub fn minimize(
     Ok(here.report(x, steps, reached, orthogonality, &limits))
 }
 
-/// Coleman and Li's variables at a point, and the model in them.
+/// Coleman and Li's variables at a point, with the model in them.
 struct Frame {
     /// Lengths in x of the variables' units.
     scale: Vec<f64>,
     model: Model,
-    /// Share of the way to a wall that a step may go.
+    /// Share of the distance to a wall that a step may cover.
     share: f64,
     /// Orthogonality of the residuals to the tangent space of the parameters not held at a bound.
     orthogonality: f64,
@@ -168,7 +169,7 @@ struct Frame {
 impl Frame {
     fn at(here: &Local, walls: &Walls, x: &[f64], scales: &[f64], limits: &Limits) -> Self {
         let gradient = here.gradient();
-        // Distance to the bound that the descent goes to, where there is one, in scaled units.
+        // Distance to the bound that the descent leads to, in scaled units; `None` without a bound.
         let distances: Vec<Option<f64>> = x
             .iter()
             .zip(walls.low.iter().zip(walls.high))
@@ -183,7 +184,7 @@ impl Frame {
         for ((distance, unit), g) in distances.iter().zip(scales).zip(&gradient) {
             let reach = distance.map_or(1.0, |distance| distance * unit);
             scale.push(reach.sqrt() / unit);
-            // Curvature that the changing distance adds: |g| in scaled units; none without a bound.
+            // Curvature from the changing distance: |g| in scaled units; none without a bound.
             extra.push(distance.map_or(0.0, |_| (g / unit).abs().sqrt()));
             pressure = pressure.max((g / unit * reach).abs());
         }
@@ -213,7 +214,7 @@ impl Frame {
     }
 }
 
-/// Orthogonality with some parameters held.
+/// Returns the orthogonality with some parameters held.
 fn orthogonality(here: &Local, held: &[bool]) -> f64 {
     if !held.contains(&true) {
         return here.orthogonality;

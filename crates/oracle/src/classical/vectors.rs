@@ -1,12 +1,12 @@
-//! Sums over plain vectors.
+//! Basic operations on plain vectors.
 
 /// Half the distance from 1 to the next double.
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-/// Terms that are summed one after the other; more are summed by halves.
+/// Number of terms that are summed in sequence; longer sums are split into halves.
 const RUN: usize = 64;
 
-/// Σ aᵢ·bᵢ, by halves: rounding errors grow with the logarithm of the number of terms.
+/// Returns Σ aᵢ·bᵢ, summed by halves: rounding errors grow with the logarithm of the number of terms.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let count = a.len().min(b.len());
     match (a.split_at_checked(count / 2), b.split_at_checked(count / 2)) {
@@ -17,7 +17,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
 }
 
-/// Σ aᵢ, by halves.
+/// Returns Σ aᵢ, summed by halves.
 pub(super) fn sum(a: &[f64]) -> f64 {
     match a.split_at_checked(a.len() / 2) {
         Some((head, tail)) if a.len() > RUN => sum(head) + sum(tail),
@@ -25,7 +25,7 @@ pub(super) fn sum(a: &[f64]) -> f64 {
     }
 }
 
-/// Euclidean length, without overflow or underflow on the way.
+/// Returns the Euclidean length, without intermediate overflow or underflow.
 pub(super) fn length(a: &[f64]) -> f64 {
     let largest = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if largest == 0.0 || !largest.is_finite() {
@@ -37,34 +37,34 @@ pub(super) fn length(a: &[f64]) -> f64 {
     largest * a.iter().map(|x| (x / largest) * (x / largest)).sum::<f64>().sqrt()
 }
 
-/// y ← y + factor·x.
+/// Adds factor·x to y.
 pub(super) fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;
     }
 }
 
-/// Entrywise product.
+/// Returns the entrywise product.
 pub(super) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
 }
 
-/// Entrywise quotient.
+/// Returns the entrywise quotient.
 pub(super) fn over(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a / b).collect()
 }
 
-/// Entrywise difference.
+/// Returns the entrywise difference.
 pub(super) fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// Whether every entry is finite.
+/// Returns `true` if every entry is finite.
 pub(super) fn finite(a: &[f64]) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
-/// Product of a matrix by columns with a vector.
+/// Returns the product of a matrix given by columns with a vector.
 pub(super) fn combine(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     debug_assert_eq!(columns.len(), weights.len(), "a weight for each column");
     // Without columns there are no rows.
@@ -76,7 +76,7 @@ pub(super) fn combine(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// Square diagonal matrix by columns.
+/// Returns a square diagonal matrix by columns.
 pub(super) fn diagonal(entries: &[f64]) -> impl Iterator<Item = Vec<f64>> {
     let size = entries.len();
     entries.iter().enumerate().map(move |(at, entry)| {
@@ -92,7 +92,7 @@ pub(super) fn diagonal(entries: &[f64]) -> impl Iterator<Item = Vec<f64>> {
 mod tests {
     use super::{add_scaled, combine, diagonal, dot, finite, length, minus, over, sum, times};
 
-    /// Whole numbers are added without rounding, however many and in whichever order.
+    /// Whole numbers are added without rounding, in any number and order.
     #[test]
     fn sums_hold_every_term_once() {
         for count in [0, 1, 2, 63, 64, 65, 66, 127, 128, 129, 1000, 12_345_u32] {
@@ -102,11 +102,11 @@ mod tests {
             assert_eq!(dot(&terms, &terms), n * (n + 1.0) * (2.0 * n + 1.0) / 6.0);
             assert_eq!(dot(&terms, &[]), 0.0);
         }
-        // The shorter one ends the product.
+        // The shorter vector ends the product.
         assert_eq!(dot(&[1.0, 2.0, 3.0], &[4.0, 5.0]), 14.0);
     }
 
-    /// A tenth has no double: a million of them one after the other are off by 1e-11, by halves by 1e-15.
+    /// A tenth is not a double: a million of them summed in sequence are off by 1e-11, by halves by 1e-15.
     #[test]
     fn sums_by_halves_keep_their_digits() {
         let tenths = vec![0.1; 1_000_000];

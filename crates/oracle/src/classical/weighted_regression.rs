@@ -6,7 +6,7 @@ use crate::error::OracleError;
 use envelope::Envelope;
 use seed::Seed;
 
-/// Weighted least squares with uniform weights, as the paper has it.
+/// Weighted least squares with uniform weights, as in the paper.
 pub const ROUTE: ClassicalRoute = ClassicalRoute {
     id: "weighted-regression",
     paper_number: 11,
@@ -22,14 +22,14 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
     fit_line(envelope, |columns, y| least_squares(columns, y, &weights))
 }
 
-/// Minimizes Σ wᵢ·rᵢ² over the columns' coefficients: weights are inverse variances up to a factor.
+/// Minimizes Σ wᵢ·rᵢ² over the columns' coefficients. The weights are inverse variances up to a factor.
 ///
-/// Weights are positive, one for each row. A weight k counts a row k times in the coefficients, but not
-/// in the degrees of freedom of the standard errors.
+/// Weights are positive, one per row. For the coefficients, a weight k counts a row k times; for the degrees
+/// of freedom of the standard errors it counts the row once.
 ///
 /// # Errors
-/// [`OracleError::Weight`] for a weight that is not positive and finite, [`OracleError::Shape`] (column
-/// 0) for a wrong number of weights; otherwise as the unweighted routes.
+/// [`OracleError::Weight`] for a weight that is not positive and finite, [`OracleError::Shape`] (column 0)
+/// for a wrong number of weights; otherwise the errors of the unweighted routes.
 pub fn least_squares(columns: &[&[f64]], y: &[f64], weights: &[f64]) -> Result<LinearSolution, OracleError> {
     if weights.len() != y.len() {
         return Err(OracleError::Shape { column: 0, found: weights.len(), expected: y.len() });
@@ -62,8 +62,8 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64], weights: &[f64]) -> Result<L
     Ok(solution)
 }
 
-/// Triangle and projections, the right-hand side treated as one more column: that makes it as accurate
-/// as Householder's method.
+/// Returns triangle and projections. The right-hand side is treated as one more column, which makes the
+/// method as accurate as Householder's.
 fn gram_schmidt(columns: Vec<Vec<f64>>, mut y: Vec<f64>) -> Result<(Triangle, Vec<f64>), OracleError> {
     let size = columns.len();
     let mut rest: std::collections::VecDeque<Vec<f64>> = columns.into();

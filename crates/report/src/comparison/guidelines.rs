@@ -1,4 +1,4 @@
-//! The paper's guidelines for choosing a method, Table 6, beside what this run's numbers say.
+//! Guidelines for choosing a method, from the paper's Table 6, beside this run's numbers.
 
 use results::{ComparisonResult, MethodEstimate, MethodRow};
 
@@ -15,10 +15,9 @@ const QR: u8 = 4;
 const SVD: u8 = 5;
 const WEIGHTED: u8 = 11;
 
-/// From so many peaks on a fit of a line is a large one.
+/// Smallest number of peaks of a large fit of a line.
 const LARGE: usize = 100_000;
-/// From this condition number on the normal equations, which square it, lose a quarter of a double's
-/// digits.
+/// Condition number from which on the normal equations, which square it, lose a quarter of a double's digits.
 const HARD: f64 = 100.0;
 
 pub(super) fn guidelines(result: &ComparisonResult) -> WordTable {
@@ -135,7 +134,7 @@ fn closest(result: &ComparisonResult) -> String {
     else {
         return "No method gave an estimate.".to_owned();
     };
-    // Compared as they are shown.
+    // Compared as displayed.
     let shown = fixed(most, 1);
     let names: Vec<String> = estimates(result)
         .filter(|(_, estimate)| fixed(estimate.digits_of_agreement, 1) == shown)
@@ -152,12 +151,12 @@ fn fastest(result: &ComparisonResult) -> Option<(&MethodRow, &MethodEstimate)> {
         .min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))
 }
 
-/// A method of the paper by its number, where it gave an estimate.
+/// Returns the paper's method with a number, if it gave an estimate.
 fn numbered(result: &ComparisonResult, number: u8) -> Option<(&MethodRow, &MethodEstimate)> {
     estimates(result).find(|(row, _)| row.number == Some(number))
 }
 
-/// What there is to say of a method of the paper, or that there is nothing.
+/// Returns a statement on the paper's method with a number, or that it gave no estimate.
 fn of(result: &ComparisonResult, number: u8, name: &str, say: impl Fn(&MethodEstimate) -> String) -> String {
     match result.results.iter().find(|row| row.number == Some(number)) {
         Some(row) => match row.outcome.estimate() {

@@ -1,4 +1,4 @@
-//! The tables of a comparison as GitHub Markdown.
+//! Tables of a comparison as GitHub Markdown.
 
 use results::ComparisonResult;
 
@@ -105,7 +105,7 @@ fn pipelines(rows: &[PipelineView<'_>]) -> String {
     grid(&columns, rows)
 }
 
-/// A table; of each column its title, and whether it is aligned to the right.
+/// Returns a Markdown table; each column is a title and `true` for right alignment.
 pub(crate) fn grid(columns: &[(&str, bool)], rows: impl Iterator<Item = Vec<String>>) -> String {
     let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
     let titles: Vec<String> = columns.iter().map(|(title, _)| escape(title)).collect();
@@ -120,8 +120,7 @@ pub(crate) fn list(items: impl Iterator<Item = String>) -> String {
     items.map(|item| format!("- {item}")).collect::<Vec<_>>().join("\n")
 }
 
-/// Text that stands in Markdown as itself, on one line. The caller sees to it that no line begins
-/// with it.
+/// Escapes text so that Markdown shows it literally, on one line. The caller must not begin a line with it.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -133,7 +132,7 @@ pub(crate) fn escape(text: &str) -> String {
                 escaped.push('\\');
                 escaped.push(letter);
             }
-            // A line break ends a table.
+            // A line break would end the table.
             _ if letter.is_control() => escaped.push(' '),
             _ => escaped.push(letter),
         }
@@ -160,7 +159,7 @@ mod tests {
             assert_eq!(*width.get_or_insert(cells), cells, "{line}");
             rows += 1;
         }
-        // Five tables with two lines of head, and one for the pipelines.
+        // Five tables with two header lines each, and one for the pipelines.
         assert_eq!(rows, 6 * 2 + 9 + 8 + 11 + 10 + 6 + 4);
     }
 

@@ -5,7 +5,7 @@ use results::{Ablation, AblationRow, ComparisonResult, Family, MethodOutcome, Me
 use crate::format::{count, duration, fixed, significant};
 use crate::tables::whole;
 
-/// How to read these tables.
+/// Explanation of these tables.
 pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀ is that of certified least squares; the worst is the largest over a \
      method’s seeds. Digits are the significant digits in which the worst seed agrees with ζ₀; a double has \
      15.7. ± is the method’s own standard error of ζ, where it states one. ζ, steps and state are the first \
@@ -14,7 +14,7 @@ pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀
      squares at all. At zero and on noise are the first seed’s errors in percent with the learned part held at zero, and with \
      noise for what it reads: an error that stays small says that this part, or what it read, contributed nothing to λ.";
 
-/// How to read the two columns of ablations, for the terminal.
+/// Explanation of the two columns of ablations, for the terminal.
 pub const ABLATION_READING: &str = "an error that stays small says that the learned part, or what it read, contributed nothing to \
      the decay rate";
 
@@ -27,8 +27,8 @@ pub fn ablation_cell(ablations: &[AblationRow], part: Ablation) -> String {
     }
 }
 
-/// What the columns say. The first is the method's number, the second its name, the last whether it
-/// passes; a method without an estimate has its reason in place of all others.
+/// Titles of the columns. The first column holds the method's number, the second its name, the last its
+/// verdict. A method without an estimate has its reason in place of all others.
 pub(super) const COLUMNS: [&str; 16] = [
     "#",
     "method",
@@ -65,7 +65,7 @@ pub(super) struct MethodView {
     pub(super) numbers: Vec<String>,
     /// The state, or why there is no estimate.
     pub(super) state: String,
-    /// What stopped the first seed's fit; empty where there is no estimate.
+    /// Reason that the first seed's fit stopped; empty if there is no estimate.
     pub(super) because: String,
     pub(super) passes: bool,
 }

@@ -1,4 +1,4 @@
-//! The page on a comparison of many methods, and its tables as Markdown.
+//! Page of a comparison of many methods, and its tables as Markdown.
 
 mod figures;
 mod guidelines;

@@ -1,4 +1,4 @@
-//! What certified least squares says of the oscillation, and what follows from that: the paper's
+//! Parameters of the oscillation by certified least squares, and quantities derived from them: the paper's
 //! Table 3 and the derived parameters.
 
 use results::ComparisonResult;
@@ -10,7 +10,7 @@ use crate::format::{
 };
 use crate::tables::{Fact, fact};
 
-/// The oscillation as the envelope and certified least squares have it.
+/// Returns the parameters of the oscillation from the envelope and certified least squares.
 pub(super) fn parameters(result: &ComparisonResult) -> WordTable {
     let (oracle, derived) = (&result.oracle, &result.derived);
     let (amplitude, unit) = initial_amplitude(result);
@@ -38,10 +38,10 @@ pub(super) fn parameters(result: &ComparisonResult) -> WordTable {
     }
 }
 
-/// Where there is no unit.
+/// Placeholder for a missing unit.
 const NONE: &str = "–";
 
-/// The amplitude at the first peak; of an angle in degrees.
+/// Returns the amplitude at the first peak; that of an angle is in degrees.
 fn initial_amplitude(result: &ComparisonResult) -> (f64, &str) {
     let amplitude = result.oracle.log_amplitude.exp();
     match result.data.unit.as_str() {
@@ -50,10 +50,10 @@ fn initial_amplitude(result: &ComparisonResult) -> (f64, &str) {
     }
 }
 
-/// What follows from frequency, decay rate and moment of inertia.
+/// Returns the quantities that follow from frequency, decay rate and moment of inertia.
 pub(super) fn derived(result: &ComparisonResult) -> WordTable {
     let (oracle, derived) = (&result.oracle, &result.derived);
-    // To first order whatever is proportional to λ or to 1/λ has λ's relative standard error.
+    // To first order, every quantity proportional to λ or to 1/λ has λ's relative standard error.
     let relative = (oracle.std_error / oracle.decay_rate).abs();
     let with = |value: f64| with_uncertainty(value, value.abs() * relative);
     let stiffness = significant(derived.stiffness_n_m_per_rad, 4);
@@ -96,7 +96,7 @@ pub(super) fn derived(result: &ComparisonResult) -> WordTable {
     }
 }
 
-/// The whole comparison on one card.
+/// Returns the summary of the comparison for one card.
 pub(super) fn summary(result: &ComparisonResult) -> Vec<Fact> {
     let oracle = &result.oracle;
     let (amplitude, unit) = initial_amplitude(result);

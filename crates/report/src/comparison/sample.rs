@@ -1,4 +1,4 @@
-//! A comparison as it might have been, for the tests.
+//! A made-up comparison for the tests.
 
 use results::{
     Ablation, AblationRow, Caution, ComparisonResult, Derived, EnvelopeRow, Estimand, Family, MethodEstimate,
@@ -10,7 +10,7 @@ use crate::{ReportError, RunTexts, render};
 
 const INERTIA: f64 = 5e-4;
 
-/// Name, title, error of the first seed and of the worst in percent, standard error, seeds, steps,
+/// Name, title, errors of the first and of the worst seed in percent, standard error, seeds, steps,
 /// parameters, seconds.
 type Line = (&'static str, &'static str, f64, f64, Option<f64>, u64, u64, usize, f64);
 
@@ -76,7 +76,7 @@ fn estimate(line: &Line, zeta: f64, omega: f64) -> MethodEstimate {
     }
 }
 
-/// 21 methods, one of which gives no estimate.
+/// Returns a comparison of 21 methods, one of which gives no estimate.
 pub(crate) fn result() -> ComparisonResult {
     let run = Sample::new().result;
     let (omega, oracle) = (run.envelope.omega_rad_s, run.oracle);
@@ -148,7 +148,7 @@ pub(crate) fn result() -> ComparisonResult {
     }
 }
 
-/// The same with every method within the tolerance.
+/// Returns a comparison in which every method is within the tolerance.
 pub(crate) fn passing() -> ComparisonResult {
     let mut result = result();
     let line = ("symbolic", "Symbolic regression", 6.1e-8, 3.2e-5, None, 5, 120, 2, 1.76);
@@ -160,7 +160,7 @@ pub(crate) fn passing() -> ComparisonResult {
     result
 }
 
-/// The folder of a comparison, which tests change before they make its report.
+/// Folder of a comparison, which tests change before they make its report.
 pub(crate) struct Folder {
     pub(crate) run: Sample,
     pub(crate) result: ComparisonResult,
@@ -194,9 +194,9 @@ impl Folder {
     }
 }
 
-/// Writes the sample pages into the folder that `REPORT_SAMPLES` names, to be looked at.
+/// Writes the sample pages into the folder that `REPORT_SAMPLES` names, for visual inspection.
 #[test]
-// As its namesake for a single run: touches a disk only when asked to by name.
+// As its namesake for a single run: touches a disk only when called by name.
 #[allow(clippy::disallowed_methods)]
 #[ignore = "writes files; for looking at the page after a change of its template"]
 fn write_samples() {
@@ -209,7 +209,7 @@ fn write_samples() {
     sample.result.data.origin = Origin::Simulated;
     std::fs::write(folder.join("comparison-pass.html"), sample.render().unwrap()).unwrap();
 
-    // What a page has to withstand rather than what it is for.
+    // Extreme values that a page has to withstand.
     sample.run.name = "x".repeat(200);
     sample.result.data.origin = Origin::Unstated;
     for row in &mut sample.result.results {

@@ -1,4 +1,4 @@
-//! What a comparison came to, in a sentence or two.
+//! Verdict of a comparison, in a sentence or two.
 
 use results::{ComparisonResult, MethodRow, Reached};
 
@@ -6,17 +6,18 @@ use super::parts::estimates;
 use crate::format;
 use crate::verdict::{Tone, Verdict, in_a_sentence};
 
-/// Names in one list, beyond which the rest is counted.
+/// Largest number of names in one list; the remaining ones are only counted.
 const MOST_NAMES: usize = 4;
 
-/// How many of the methods that are held to least squares are within the tolerance on every seed, and how many there are.
+/// Returns the number of methods that are within the tolerance on every seed, and the number of all methods,
+/// both among those that are compared with least squares.
 pub(super) fn passed(result: &ComparisonResult) -> (usize, usize) {
     let held = || result.held_to_least_squares();
     (held().filter(|row| row.outcome.passes()).count(), held().count())
 }
 
-/// What is said of methods that estimate something else than least squares, to go on with behind a sentence about the others;
-/// empty where there are none.
+/// Returns the end of a sentence on the methods that estimate another quantity than least squares, to follow
+/// a statement about the other methods; empty if there are none.
 #[must_use]
 pub fn beside_least_squares(result: &ComparisonResult) -> String {
     let names: Vec<String> = result.of_their_own().map(|row| in_a_sentence(&row.title)).collect();
@@ -63,7 +64,7 @@ pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
     Verdict { tone, label, sentence: sentences.join(" ") }
 }
 
-/// The sentence where every method passes.
+/// Returns the sentence for a comparison in which every method passes.
 fn agreement(result: &ComparisonResult, count: usize, tolerance: &str) -> String {
     let who = if count == 1 {
         "The one method agrees".to_owned()
@@ -91,7 +92,7 @@ fn agree(passed: usize, count: usize) -> String {
     }
 }
 
-/// Who does not pass: outside the tolerance, or without an estimate.
+/// Returns a sentence on the methods that do not pass: outside the tolerance, or without an estimate.
 fn shortfalls(result: &ComparisonResult) -> String {
     let outside: Vec<String> = estimates(result)
         .filter(|(_, estimate)| !estimate.pass)
@@ -118,7 +119,7 @@ fn shortfalls(result: &ComparisonResult) -> String {
         .collect()
 }
 
-/// The methods within the tolerance that stopped before they converged.
+/// Returns a sentence on methods within the tolerance that stopped before they converged.
 fn unfinished(result: &ComparisonResult) -> Option<String> {
     let names: Vec<String> = estimates(result)
         .filter(|(_, estimate)| estimate.pass && estimate.reached != Reached::Converged)
@@ -127,7 +128,7 @@ fn unfinished(result: &ComparisonResult) -> Option<String> {
     (!names.is_empty()).then(|| format!("Within the tolerance, but stopped unconverged: {}.", listed(&names)))
 }
 
-/// The method with the largest error over its seeds; of equals the first.
+/// Returns the method with the largest error over its seeds; the first one if several are equal.
 fn worst(result: &ComparisonResult) -> Option<(&MethodRow, f64)> {
     let mut found: Option<(&MethodRow, f64)> = None;
     for (row, estimate) in
@@ -141,7 +142,7 @@ fn worst(result: &ComparisonResult) -> Option<(&MethodRow, f64)> {
     found
 }
 
-/// Names in a row, the last few only counted.
+/// Joins names; the last few are only counted.
 pub(super) fn listed(names: &[String]) -> String {
     let shown = names.get(..names.len().min(MOST_NAMES)).unwrap_or_default().join(", ");
     match names.len().saturating_sub(MOST_NAMES) {
@@ -228,7 +229,8 @@ mod tests {
         assert_eq!(of(&result).0, Tone::Bad);
     }
 
-    /// The distance of what estimates something else is no shortfall, and no agreement either.
+    /// The distance of a method that estimates another quantity counts neither as a shortfall nor as
+    /// agreement.
     #[test]
     fn methods_of_their_own_estimand_are_not_counted() {
         let mut result = sample::passing();

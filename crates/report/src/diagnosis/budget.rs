@@ -1,32 +1,33 @@
-//! The gap budget as one stacked bar.
+//! Gap budget as one stacked bar.
 
 use results::BudgetShares;
 
 use crate::format;
 use crate::plot::Hue;
 
-/// Below this share a stretch of the bar has no room for its number.
+/// Smallest share whose stretch of the bar has room for its number.
 const LEAST_LABELED: f64 = 0.08;
-/// A share below this rounds to zero.
+/// Smallest share that does not round to zero.
 const LEAST_SHOWN: f64 = 5e-4;
 
 /// One stretch of the bar.
 pub(super) struct Share {
-    /// The class of cause.
+    /// Class of cause.
     pub(super) name: &'static str,
-    /// What it means.
+    /// Meaning of the class.
     pub(super) meaning: &'static str,
-    /// The share in percent, as it stands in the legend.
+    /// Share in percent, as shown in the legend.
     pub(super) percent: String,
-    /// The share, as the style sheet has it.
+    /// Share, as the style sheet uses it.
     pub(super) grow: String,
-    /// The style sheet's variable of its color.
+    /// Style-sheet variable of the color.
     pub(super) hue: &'static str,
-    /// Whether there is room for the number.
+    /// `true` if there is room for the number.
     pub(super) labeled: bool,
 }
 
-/// The classes that have a share, in the order of the documents; none where recalibration leaves no gap.
+/// Returns the classes that have a share, in the order of the documents; empty if recalibration leaves no
+/// gap.
 pub(super) fn shares(budget: &BudgetShares) -> Vec<Share> {
     [
         ("dissipative", "takes energy out of the motion", budget.dissipative, Hue::Estimate),

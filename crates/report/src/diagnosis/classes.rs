@@ -1,4 +1,5 @@
-//! The first screen: classes of effects as bars, the surest first, and what has no name.
+//! First screen of a diagnosis: classes of effects as bars, the most certain first, and the share without a
+//! name.
 
 use results::DiagnosisResult;
 
@@ -7,16 +8,17 @@ use crate::classes::{
 };
 use crate::format::{self, significant};
 
-/// Shares of kinds add up to 1, but where stamps or values show a kind beside those that were fitted.
+/// Largest plausible sum of the kinds' shares: they add up to 1, unless stamps or values show a kind beside
+/// the fitted ones.
 const MOST_SHARED: f64 = 1.01;
 
-/// Classes of one standing.
+/// Classes with the same standing.
 pub(super) struct Group {
     /// `Certain`, `Likely` or `Open`.
     pub(super) title: String,
-    /// The class in the style sheet, and the tag at each row.
+    /// Name of the class in the style sheet, and tag at each row.
     pub(super) word: &'static str,
-    /// The probabilities that have this standing.
+    /// Probabilities with this standing.
     pub(super) range: String,
     pub(super) rows: Vec<ClassView>,
 }
@@ -25,12 +27,12 @@ pub(super) struct Group {
 pub(super) struct ClassView {
     pub(super) title: String,
     pub(super) probability: Bar,
-    /// Absent where the repaired simulator has no effect of the class.
+    /// Share of the gap; `None` if the repaired simulator has no effect of the class.
     pub(super) share: Option<Bar>,
-    /// Share of the draws of segments in which the class comes back; absent where no fit speaks.
+    /// Share of bootstrap draws of the segments in which the class is found again; `None` without a fit.
     pub(super) stability: Option<String>,
     pub(super) sentence: String,
-    /// Kinds with their shares of the class, where there are several.
+    /// Kinds with their shares of the class, if there are several.
     pub(super) kinds: Vec<(String, Bar)>,
 }
 
@@ -47,13 +49,13 @@ impl Bar {
     }
 }
 
-/// The share of the gap without a name, with what the repaired simulator leaves.
+/// Share of the gap without a name, and the left-over of the repaired simulator.
 pub(super) struct Nameless {
     pub(super) bar: Bar,
     pub(super) note: String,
 }
 
-/// Classes that are certain, likely or open; standings without a class are left out.
+/// Returns the classes that are certain, likely or open; standings without a class are left out.
 pub(super) fn groups(result: &DiagnosisResult) -> Vec<Group> {
     let all = class_statements(result);
     Standing::ALL
@@ -96,7 +98,7 @@ fn view(result: &DiagnosisResult, one: &ClassStatement<'_>) -> ClassView {
     }
 }
 
-/// What has no name, where there is a gap that can be divided.
+/// Returns the share without a name, if there is a gap that can be divided.
 pub(super) fn nameless(result: &DiagnosisResult) -> Option<Nameless> {
     let share = nameless_share(result)?;
     let left = result.left_over?;

@@ -1,9 +1,9 @@
-//! What the plots of a diagnosis share.
+//! Parts shared by the plots of a diagnosis.
 
 use crate::figures::Figure;
 use crate::plot::{Drawing, Hue, Mark, Series};
 
-/// A drawing with what stands around it.
+/// Returns a drawing with its title, explanation and data.
 pub(super) fn framed(
     id: &'static str,
     title: String,
@@ -18,7 +18,7 @@ pub(super) fn framed(
     Figure { id: id.into(), title: title.into(), explanation, notes, drawing, csv, rows }
 }
 
-/// The simulator that a series is of.
+/// The simulator that a series belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Simulator {
     Given,
@@ -27,7 +27,7 @@ pub(super) enum Simulator {
 }
 
 impl Simulator {
-    /// Its series; each has one color on the whole page.
+    /// Returns the simulator's series; each simulator has one color on the whole page.
     pub(super) fn series(self, mark: Mark, points: Vec<(f64, f64)>) -> Series {
         let (label, hue) = match self {
             Self::Given => ("simulator as given", Hue::Third),
@@ -38,7 +38,7 @@ impl Simulator {
     }
 }
 
-/// What was recorded.
+/// Returns the series of the record.
 pub(super) fn recorded(mark: Mark, points: Vec<(f64, f64)>) -> Series {
     Series { label: "recorded".to_owned(), hue: Hue::Data, mark, points }
 }

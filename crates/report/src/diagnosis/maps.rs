@@ -1,4 +1,4 @@
-//! Where the gap lies: over time, amplitude, the phase plane and frequency.
+//! Maps of the gap over time, amplitude, the phase plane and frequency.
 
 use results::{DiagnosisResult, MapCell};
 
@@ -6,7 +6,7 @@ use super::figures::{Simulator, framed};
 use crate::figures::{Figure, csv, number};
 use crate::plot::{Axis, BREAK, HeatCell, HeatMap, Hue, Mark, Plot, Series};
 
-/// Cells of the spectrum that are shown beyond the last significant one.
+/// Number of cells of the spectrum shown beyond the last significant one.
 const BEYOND: usize = 6;
 
 pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
@@ -54,15 +54,15 @@ enum Scale {
     Log,
 }
 
-/// The part of a spectrum with something to see: beyond the last significant cell it is noise up to half the sampling
-/// rate.
+/// Returns the informative part of a spectrum: beyond the last significant cell it is noise up to half the
+/// sampling rate.
 fn spectrum(cells: &[MapCell]) -> &[MapCell] {
-    // Where no cell is significant the first ones stand for the rest.
+    // Without a significant cell, the first cells represent the rest.
     let last = cells.iter().rposition(|cell| cell.significant).unwrap_or(0);
     cells.get(..(last + 1 + BEYOND).min(cells.len())).unwrap_or(cells)
 }
 
-/// Cells along one axis as steps, interrupted where cells are apart or empty.
+/// Returns the cells along one axis as steps, interrupted where cells are apart or empty.
 fn stairs(cells: &[MapCell], value: impl Fn(&MapCell) -> f64) -> Vec<(f64, f64)> {
     let mut points = Vec::with_capacity(2 * cells.len());
     let mut last = f64::NEG_INFINITY;

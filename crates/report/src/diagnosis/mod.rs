@@ -1,4 +1,4 @@
-//! The page on a diagnosis.
+//! Page of a diagnosis.
 
 mod budget;
 mod classes;
@@ -99,7 +99,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
 }
 
 fn headline(result: &DiagnosisResult) -> Verdict {
-    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    // Beyond √2 noise floors, more than half of the remaining squared error is not noise.
     let [ratio, _] = result.gap.ratio_to_floor_interval_95;
     let explained = if ratio.powi(2) > 2.0 { Tone::Caution } else { Tone::Good };
     let (tone, label) = match result.verdict.status {
@@ -143,7 +143,7 @@ fn warnings(result: &DiagnosisResult) -> Vec<String> {
     warnings
 }
 
-/// The next experiment, and what can be done with the answer already.
+/// Returns the next experiment, and possible uses of the present answer.
 fn next(result: &DiagnosisResult) -> Vec<String> {
     let mut steps = Vec::new();
     if !result.next_experiment.text.is_empty() {

@@ -1,4 +1,4 @@
-//! Backbone curves and the restoring-force surface.
+//! Plots of the backbone curves and the restoring-force surface.
 
 use results::{BackbonePoint, DiagnosisResult, SurfaceCell};
 
@@ -6,7 +6,7 @@ use super::figures::{Simulator, framed, recorded};
 use crate::figures::{Figure, csv, number};
 use crate::plot::{Axis, HeatCell, HeatMap, Mark, Plot};
 
-/// Points of a backbone curve: each is the median of neighbors in amplitude.
+/// Largest number of points of a backbone curve; each is the median of neighbors in amplitude.
 const POINTS: usize = 40;
 /// Smallest amplitude shown, in units of the noise floor.
 const SMALLEST: f64 = 10.0;
@@ -66,7 +66,7 @@ fn backbone(
     if curves.measured.is_empty() {
         return None;
     }
-    // Below, turning points are those of the noise.
+    // Below, turning points are due to the noise.
     let least = SMALLEST * result.gap.noise_floor;
     let points = |of: &[BackbonePoint]| {
         let swings: Vec<BackbonePoint> =
@@ -95,7 +95,7 @@ fn backbone(
     Some(framed(id, title.to_owned(), explanation.to_owned(), drawing, table))
 }
 
-/// Medians of neighbors in amplitude, from small to large.
+/// Returns medians of neighbors in amplitude, by increasing amplitude.
 fn medians(points: &[BackbonePoint], value: fn(&BackbonePoint) -> Option<f64>) -> Vec<(f64, f64)> {
     let mut pairs: Vec<(f64, f64)> =
         points.iter().filter_map(|point| Some((point.amplitude, value(point)?))).collect();

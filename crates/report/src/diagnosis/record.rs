@@ -1,4 +1,4 @@
-//! The record against the simulators, and what each leaves over.
+//! Plots of the record against the simulators, and of their residuals.
 
 use results::{DiagnosisResult, RecordRow, SeriesRow};
 
@@ -8,12 +8,12 @@ use crate::figures::{Figure, csv, number};
 use crate::format::{self, quantity, significant};
 use crate::plot::{Axis, BREAK, Hue, Mark, Plot, Series};
 
-/// Samples of the worst stretch that are shown: a few periods of an ordinary record.
+/// Largest number of samples shown of the worst stretch: a few periods of an ordinary record.
 const MOST_SHOWN: usize = 500;
-/// Records drawn in one plot.
+/// Largest number of records in one plot.
 const MOST_RECORDS: usize = 4;
 
-/// The stretch in which the recalibrated simulator is farthest off.
+/// The stretch in which the recalibrated simulator has the largest error.
 struct Worst<'a> {
     record: usize,
     rows: &'a [SeriesRow],
@@ -44,7 +44,7 @@ fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
     let segments = rows.chunk_by(|one, next| one.segment == next.segment);
     let mean = |rows: &[SeriesRow]| rows.iter().map(off).sum::<f64>() / rows.len().max(1) as f64;
     let segment = segments.max_by(|a, b| mean(a).total_cmp(&mean(b)))?;
-    // Of a long segment the part about its largest deviation.
+    // For a long segment, the part around its largest deviation.
     let at = segment.iter().enumerate().max_by(|a, b| off(a.1).total_cmp(&off(b.1)))?.0;
     let start = at.saturating_sub(MOST_SHOWN / 2).min(segment.len().saturating_sub(MOST_SHOWN));
     let rows = segment.get(start..(start + MOST_SHOWN).min(segment.len()))?;
@@ -64,7 +64,7 @@ fn time() -> Axis {
     Axis::linear("time (s)")
 }
 
-/// A line for each of the first records; `single` names that of a single one.
+/// Returns one line for each of the first records; `single` is the label if there is only one.
 fn by_record(
     result: &DiagnosisResult,
     rows: &[SeriesRow],
@@ -88,7 +88,7 @@ fn by_record(
         .collect()
 }
 
-/// Only where a record has one.
+/// Returns the plot of the input, if a record has one.
 fn input(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Figure> {
     rows.iter().find(|row| row.input_torque.is_some())?;
     let torque = |row: &SeriesRow| row.input_torque.unwrap_or(f64::NAN);
@@ -123,10 +123,10 @@ fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> 
     Some(framed("record", "The record".to_owned(), explanation, drawing, table))
 }
 
-/// Part of a record from which on it is said that its end is not shown.
+/// Smallest part of a record's end whose omission is stated.
 const LEFT_OUT: f64 = 0.02;
 
-/// A sentence on the end of a record that no plot shows, since nothing moves there.
+/// Returns a sentence on the ends of records that no plot shows because nothing moves there.
 fn left_out(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<String> {
     let still = |(index, record): (usize, &RecordRow)| {
         let number = index + 1;
@@ -139,15 +139,15 @@ fn left_out(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<String> {
         })
     };
     let ends: Vec<String> = result.records.iter().enumerate().filter_map(still).collect();
-    // A long record is thinned by whole stretches, of which the last may be one.
+    // A long record is thinned by whole stretches, and the last of them may be left out.
     let why = if result.samples_used < 0.9999 { "" } else { ", in which nothing moves visibly" };
     (!ends.is_empty()).then(|| format!("Not shown and not fitted: {}{why}.", listed(&ends, "and")))
 }
 
-/// Steps between samples, in units of the usual one, beyond which samples are missing.
+/// Smallest step between samples, in units of the usual step, at which samples count as missing.
 const GAP: f64 = 4.0;
 
-/// A line that breaks where time jumps: between records and where samples are missing.
+/// Returns a line that breaks where time jumps: between records and where samples are missing.
 fn pieces(rows: &[SeriesRow], value: impl Fn(&SeriesRow) -> f64) -> Vec<(f64, f64)> {
     let mut steps: Vec<f64> = rows.windows(2).map(pair_step).filter(|step| *step > 0.0).collect();
     steps.sort_by(f64::total_cmp);

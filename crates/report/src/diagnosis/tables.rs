@@ -1,4 +1,4 @@
-//! The tables of a diagnosis: which number stands where, and to how many digits.
+//! Tables of a diagnosis: cells, and the number of their digits.
 
 use results::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, RecordRow, VerdictStatus, WithInterval};
 
@@ -9,18 +9,18 @@ use crate::format::{
 use crate::remarks::read_as;
 use crate::tables::{Fact, fact, whole};
 
-/// A simulator and how far it is off.
+/// A simulator with its error.
 pub(super) struct GapView {
     pub(super) name: &'static str,
     pub(super) meaning: &'static str,
     pub(super) rms: String,
     pub(super) floors: String,
-    /// Length of its bar in percent of the longest, on a logarithmic scale from the floor on; absent where all are about
-    /// as far off.
+    /// Length of the bar in percent of the longest, on a logarithmic scale starting at the smallest error;
+    /// `None` if all errors are about equal.
     pub(super) bar: Option<String>,
 }
 
-/// Logarithm of the ratio of the largest error to the smallest from which on bars say anything.
+/// Smallest logarithm of the ratio of the largest to the smallest error for which bars are drawn.
 const LEAST_SPAN: f64 = 0.1;
 
 pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
@@ -37,8 +37,8 @@ pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
     ];
     let least = rows.iter().map(|row| row.2).filter(|rms| *rms > 0.0).fold(f64::INFINITY, f64::min);
     let most = rows.iter().map(|row| row.2).fold(0.0, f64::max);
-    // Simulators that are equally far off have no bars: on a logarithmic scale a span of nothing makes a hair as long as
-    // the whole.
+    // Simulators with equal errors get no bars: on a logarithmic scale with hardly any span, a tiny
+    // difference would fill the whole length.
     let span = (most / least).ln();
     let is_drawn = span > LEAST_SPAN;
     rows.into_iter()
@@ -88,14 +88,14 @@ pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
     notes
 }
 
-/// An effect as it stands in the table.
+/// An effect in the table.
 pub(super) struct EffectView {
     pub(super) title: String,
     pub(super) id: String,
     pub(super) probability: String,
-    /// Length of its bar in percent.
+    /// Length of the bar in percent.
     pub(super) bar: String,
-    /// One coefficient each.
+    /// Coefficients, one text each.
     pub(super) coefficients: Vec<String>,
     pub(super) share: String,
     pub(super) is_named: bool,
@@ -130,7 +130,7 @@ pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
         .collect()
 }
 
-/// Probability of the exact set: a number for trials, which score it. None where nothing is named.
+/// Returns the probability of the exact set, which trials score; `None` if nothing is named.
 pub(super) fn exact_set(result: &DiagnosisResult) -> Option<String> {
     (!result.verdict.effects.is_empty()).then(|| {
         format!(
@@ -141,7 +141,7 @@ pub(super) fn exact_set(result: &DiagnosisResult) -> Option<String> {
     })
 }
 
-/// What can and what cannot be told apart, in sentences.
+/// Returns sentences on the explanations that the data can and cannot distinguish.
 pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
     let mut sentences: Vec<String> = result
         .rivals
@@ -184,7 +184,7 @@ pub(super) fn experiments(result: &DiagnosisResult) -> Vec<String> {
         .collect()
 }
 
-/// A nominal coefficient before and after.
+/// A nominal coefficient before and after recalibration and repair.
 pub(super) struct CoefficientView {
     pub(super) name: String,
     pub(super) unit: String,
@@ -195,7 +195,7 @@ pub(super) struct CoefficientView {
 
 pub(super) fn coefficients(result: &DiagnosisResult) -> Vec<CoefficientView> {
     let view = |(name, row): (String, &CalibratedRow)| {
-        // Parameters of the simulator's own effects are held where it asks for that.
+        // Parameters of the simulator's own effects are held if the simulator says so.
         let held = if name.contains('.') { "held" } else { "held: these data cannot tell it" };
         let estimate = |found: &Option<WithInterval>| {
             found
@@ -245,7 +245,7 @@ pub(super) fn findings(result: &DiagnosisResult) -> Vec<String> {
         .collect()
 }
 
-/// A record as it stands in the list.
+/// A record in the list.
 pub(super) struct RecordView<'a> {
     pub(super) path: &'a str,
     pub(super) facts: Vec<Fact>,

@@ -1,11 +1,11 @@
-//! Of the page's verdicts, shares and series.
+//! Tests of the page's verdicts, shares and series.
 
 use results::{BudgetShares, DiagnosisResult, SeriesRow};
 use serde_json::{Value, json};
 
 use crate::{RunTexts, render, render_run};
 
-/// A diagnosis as it might have been: small, and with everything that may be absent absent.
+/// Returns a made-up small diagnosis without any of the optional parts.
 fn small() -> Value {
     let estimate = json!({ "value": 0.5, "interval_95": [0.25, null] });
     let cell = json!({ "bounds": [[0.0, 1.0]], "value": 0.02, "repaired": 0.001, "band": 0.003,
@@ -36,7 +36,8 @@ fn small() -> Value {
     })
 }
 
-/// The same with classes: friction of a kind that is not told, a restoring force that may be, and a sensor's steps.
+/// Returns the diagnosis with classes: friction of an undetermined kind, a possible restoring force, and a
+/// sensor's steps.
 fn classed() -> Value {
     let class = |id: &str, probability: f64, kinds: Value, is_told: bool| {
         json!({ "id": id, "probability": probability, "gap_share": null, "kinds": kinds, "kind_is_told": is_told,
@@ -132,7 +133,7 @@ fn what_is_absent_is_said_and_breaks_nothing() {
     assert!(!crate::scripts::stripped(&html).contains("NaN"));
 }
 
-/// Rivals without a row of their own keep the capital of a person's name.
+/// Rivals without a row of their own keep the capital letter of a person's name.
 #[test]
 fn names_of_persons_keep_their_capital() {
     let mut result = small();
@@ -156,7 +157,7 @@ fn the_worst_stretch_is_the_one_farthest_off() {
     assert_eq!(html, page(&small(), &table(&rows)), "equal bytes");
 }
 
-/// Samples are missing from 5 to 9 s: no line crosses the gap, in any plot over time.
+/// Samples are missing from 5 to 9 s: no line crosses the gap in any plot over time.
 #[test]
 fn no_line_is_drawn_across_missing_samples() {
     let at = |index: usize| 0.1 * index as f64 + if index < 50 { 0.0 } else { 4.0 };
@@ -186,7 +187,7 @@ fn the_input_is_plotted_where_there_is_one() {
     assert!(html.contains("<figure id=\"input\"") && html.contains("torque of the input (N m)"));
 }
 
-/// A map whose second cell holds no sample, and whose fourth begins beyond the end of the third.
+/// The second cell of the map holds no sample, and the fourth begins beyond the end of the third.
 #[test]
 fn no_line_is_drawn_across_empty_cells() {
     let cell = |from: f64, to: f64, samples: u64| {
@@ -229,7 +230,7 @@ fn a_status_that_there_is_not_is_refused_with_those_that_there_are() {
     assert!(refused.contains("unknown variant `asleep`, expected one of `none`, `calibration`"), "{refused}");
 }
 
-/// The plots had ended where the swing does, and nothing said that the record goes on.
+/// Regression: the plots ended where the swing does, and nothing stated that the record goes on.
 #[test]
 fn a_still_end_that_no_plot_shows_is_told() {
     let rows: Vec<SeriesRow> = (0..50).map(|index| row(1, 1, 0.1 * f64::from(index), 0.2)).collect();
@@ -250,7 +251,7 @@ fn a_still_end_that_no_plot_shows_is_told() {
 fn what_comes_from_files_is_escaped() {
     const EVIL: &str = "<script>alert(1)</script>\"'&$x$";
     let text = small().to_string();
-    // Every text of the result but what the schema and the numbers stand in.
+    // All texts of the result except the schema and those that hold numbers.
     let evil = serde_json::to_string(EVIL).unwrap();
     let mut replaced = text;
     for words in [
@@ -277,7 +278,7 @@ fn a_diagnosis_is_not_taken_for_an_estimation() {
     let text = small().to_string();
     let message = render_run(&RunTexts { result: &text, envelope: "x", ..EMPTY }).unwrap_err().to_string();
     assert!(!message.is_empty());
-    // What is written again is what was read.
+    // Writing the parsed diagnosis again gives the same value.
     assert_eq!(serde_json::to_value(read(&classed())).unwrap(), classed());
 }
 
@@ -308,7 +309,7 @@ fn the_verdict_tells_what_is_certain_likely_and_open_and_how_much_has_no_name() 
         assert!(text.contains(part), "no `{part}` in {text}");
     }
     assert!(!text.contains('\u{a0}') && !text.contains("end stop"), "{text}");
-    // What nothing speaks for is not open, though it keeps the probability that any system has it.
+    // A class without evidence is not open, although it keeps the probability that any system has it.
     let mut result = read(&classed());
     for class in &mut result.classes {
         class.evidence.replacement = class.evidence.replacement.min(0.0);

@@ -1,4 +1,4 @@
-//! The page on a fleet: the answers of a batch side by side.
+//! Page of a fleet: the diagnoses of a batch side by side.
 
 #[cfg(test)]
 mod tests;
@@ -13,11 +13,11 @@ use crate::tables::whole;
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
 
-/// Rows of a table on the page; `fleet.json` has all.
+/// Largest number of table rows on the page; `fleet.json` has all rows.
 const MOST_ROWS: usize = 5_000;
-/// Outliers and failures on the page.
+/// Largest number of outliers, and of failures, on the page.
 const MOST_OUTLIERS: usize = 200;
-/// A class with this probability is likelier there than not.
+/// Probability from which on a class is likely.
 const LIKELY: f64 = 0.5;
 
 #[derive(Template)]
@@ -25,7 +25,7 @@ const LIKELY: f64 = 0.5;
 struct FleetPage<'a> {
     frame: Frame<'a>,
     classes: Vec<ClassView>,
-    /// Titles of the columns of the table by label.
+    /// Column titles of the table by label.
     titles: Vec<String>,
     groups: Vec<GroupView<'a>>,
     outliers: Vec<OutlierView<'a>>,
@@ -37,18 +37,18 @@ struct FleetPage<'a> {
     more_failed: usize,
 }
 
-/// A class of effects over all cases.
+/// Counts of a class of effects over all cases.
 struct ClassView {
     title: String,
     likely: String,
     certain: String,
     of_cases: String,
-    /// Length of its bar in percent.
+    /// Length of the bar in percent.
     bar: String,
     gap_share: String,
 }
 
-/// The cases of one label.
+/// Cases with the same value of a label.
 struct GroupView<'a> {
     label: &'a str,
     value: &'a str,
@@ -73,7 +73,7 @@ struct CaseView<'a> {
     labels: Vec<&'a str>,
     status: &'static str,
     tone: &'static str,
-    /// Classes that are likelier there than not, with their probabilities, the most probable first.
+    /// Likely classes with their probabilities, the most probable first.
     effects: String,
     origin: &'static str,
     over_noise: String,
@@ -117,7 +117,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &FleetResult) -> Result<Strin
     })
 }
 
-/// In the place of a file of megabytes.
+/// Note that replaces a file of several megabytes.
 const FILE_NOTE: &str = "The file stands beside this page.";
 
 fn headline(result: &FleetResult) -> Verdict {
@@ -151,7 +151,7 @@ fn headline(result: &FleetResult) -> Verdict {
     }
 }
 
-/// That of the records, where all share it.
+/// Returns the origin of the records, if all share it.
 fn origin(result: &FleetResult) -> Origin {
     let stated = result.cases.iter().map(|case| case.origin);
     verdict::origin_of_all(
@@ -235,7 +235,7 @@ fn absent() -> String {
     "–".to_owned()
 }
 
-/// The answer of a case, relative to this page.
+/// Returns the address of a case's diagnosis, relative to this page.
 fn link(id: &str) -> String {
     format!("{}/diagnosis.json", crate::rigs::encoded(id))
 }

@@ -1,4 +1,5 @@
-//! A small fleet of two robots, and one with everything in its names that a page has to escape.
+//! Tests with a small fleet of two robots, and with a fleet whose names hold everything that a page has to
+//! escape.
 
 use crate::{RunTexts, render};
 use serde_json::{Value, json};
@@ -39,7 +40,7 @@ fn it_says_which_effects_where_and_what_is_odd() {
     ] {
         assert!(html.contains(part), "{part}\n{html}");
     }
-    // A class that no case has is no row, and every long table can be filtered.
+    // A class that no case has gets no row, and every long table can be filtered.
     assert!(!html.contains("drift"));
     assert_eq!(html.matches("<table class=\"rows methods filtered\">").count(), 4);
 }

@@ -1,4 +1,5 @@
-//! The plots of a data set: free runs against the record, learned torques against the true ones, errors by method.
+//! Plots of a data set: free runs against the record, learned torques against the true ones, errors by
+//! method.
 
 use results::{LearnKind, LearnProblem, LearnRow, LearnSeriesRow, LearnTorqueRow};
 
@@ -6,7 +7,7 @@ use crate::figures::{Figure, csv, figure, number};
 use crate::parse::Learning;
 use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 
-/// Methods whose free runs are drawn, the best ones.
+/// Largest number of free runs drawn, those of the best methods.
 const MOST_RUNS: usize = 4;
 
 pub(super) fn figures(
@@ -22,7 +23,7 @@ pub(super) fn figures(
     all
 }
 
-/// In which words the data set is named under a plot: simulated and measured are always told apart.
+/// Returns the name of the data set under a plot; it always distinguishes simulated from measured data.
 fn named(problem: &LearnProblem) -> String {
     format!("{} ({})", problem.title, crate::verdict::kind(problem.origin))
 }

@@ -1,4 +1,4 @@
-//! The page on learned dynamics: learners and baselines on records they never saw.
+//! Page of a learning study: learners and baselines on records that were not used for training.
 
 mod figures;
 #[cfg(test)]
@@ -28,7 +28,7 @@ const COLUMNS: [&str; 9] = [
     "Time (s)",
 ];
 
-/// How to read the tables.
+/// Explanation of the tables.
 const READING: &str = "Each method was given the start of a test record, its warm-up, and predicted the rest without seeing another \
      observation. The free run’s error is the root mean square over all test records, in their unit and over the sensor’s \
      noise; the horizon is the median time until the error, over a quarter of a period, passes three times the noise. One \
@@ -37,13 +37,13 @@ const READING: &str = "Each method was given the start of a test record, its war
      Below these stand the learners’ models with everything that they learned at zero, and given noise in place of past and \
      input: an error that stays small says that what is missing contributed nothing.";
 
-/// One coefficient of a law.
+/// One coefficient of a learned law.
 struct CoefficientView<'a> {
     method: &'a str,
     cells: Vec<String>,
 }
 
-/// One data set as it stands on the page.
+/// One data set on the page.
 struct ProblemView<'a> {
     id: String,
     title: &'a str,
@@ -126,7 +126,8 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
 
 fn score_row(row: &LearnRow) -> ScoreRow {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), |value| significant(value, 3));
-    // An ablation is a free run of a model that was trained already: it has no single steps and no time of its own.
+    // An ablation is a free run of an already trained model, so it has no one-step error and no training
+    // time.
     let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
     let cells = row.test.as_ref().map_or_else(Vec::new, |test| {
         vec![
@@ -162,7 +163,8 @@ fn coefficients(row: &LearnRow) -> Vec<CoefficientView<'_>> {
     row.coefficients.iter().flatten().map(one).collect()
 }
 
-/// The verdict counts on how many data sets a learner predicts better than every baseline but the repaired simulator.
+/// Returns the verdict: the number of data sets on which a learner predicts better than every baseline except
+/// the repaired simulator.
 fn headline(result: &LearnResult) -> Verdict {
     let present: Vec<&LearnProblem> =
         result.problems.iter().filter(|problem| problem.absent.is_none()).collect();

@@ -98,14 +98,14 @@ fn a_page_shows_scores_coefficients_and_plots_and_says_where_a_row_failed() {
     }
 }
 
-/// An ablation is a row of the table, no method of the plots.
+/// An ablation is a row of the table, but not a method in the plots.
 #[test]
 fn an_ablation_is_a_row_and_in_no_plot() {
     let page = page(0.002);
-    // The result stands in the page too, with its quotes escaped.
+    // The result is part of the page too, with its quotes escaped.
     assert_eq!(page.matches(">Method sindy:at-zero<").count(), 1);
     assert!(page.matches(">Method arx<").count() > 1);
-    // Neither single steps nor a training of its own: both cells are empty, not infinite and not zero.
+    // Without one-step errors and training of its own, both cells are empty, neither infinite nor zero.
     let cells = |title: &str| {
         let row = page.split(&format!(">{title}<")).nth(1).unwrap().split("</tr>").next().unwrap();
         row.split("<td>").skip(1).map(|cell| cell.split('<').next().unwrap().to_owned()).collect::<Vec<_>>()

@@ -1,16 +1,16 @@
-//! Axes: which values they span, where their ticks stand, and what the ticks say.
+//! Axes: range of values, places of the ticks, and labels of the ticks.
 //!
-//! Places on an axis are counted in ticks from the lowest one, so that all drawing deals with numbers from 0 to about 10
-//! whatever the data are.
+//! Places on an axis are counted in ticks from the lowest tick, so that all drawing uses numbers from 0 to
+//! about 10, whatever the data are.
 
 use crate::format;
 
-/// How values are spread along an axis.
+/// Scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal differences, equal lengths.
+    /// Equal differences have equal lengths.
     Linear,
-    /// Equal ratios, equal lengths; only positive values can be shown.
+    /// Equal ratios have equal lengths; only positive values can be shown.
     Log,
 }
 
@@ -19,24 +19,24 @@ pub enum Scale {
 pub struct Axis {
     /// Quantity and unit, such as `time (s)`.
     pub label: String,
-    /// How values are spread.
+    /// Scale of the values.
     pub scale: Scale,
 }
 
 impl Axis {
-    /// A linear axis.
+    /// Creates a linear axis.
     pub fn linear(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Linear }
     }
 
-    /// A logarithmic axis.
+    /// Creates a logarithmic axis.
     pub fn log(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Log }
     }
 
-    /// Whether a value has a place on an axis of this scale.
+    /// Returns `true` if an axis of this scale can show a value.
     pub(crate) fn can_show(&self, value: f64) -> bool {
-        // Far beyond any physical value, differences of finite values overflow.
+        // Beyond this, far above any physical value, differences of finite values overflow.
         const LARGEST: f64 = 1e150;
         match self.scale {
             Scale::Linear => value.abs() <= LARGEST,
@@ -44,8 +44,8 @@ impl Axis {
         }
     }
 
-    /// Ticks for an axis that shows `values`, about `target` of them. `None` without a value that
-    /// can be shown.
+    /// Returns ticks for an axis that shows `values`, about `target` of them; `None` if no value can be
+    /// shown.
     pub(crate) fn ticks(&self, values: impl Iterator<Item = f64>, target: f64) -> Option<Ticks> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in values.filter(|value| self.can_show(*value)) {
@@ -62,22 +62,21 @@ impl Axis {
     }
 }
 
-/// Evenly spaced ticks and the stretch of them that the axis shows.
+/// Evenly spaced ticks, and the part of them that the axis shows.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ticks {
     scale: Scale,
-    /// Of the lower end: the value, or its decimal logarithm.
+    /// Value at the lower end, or its decimal logarithm.
     low: f64,
-    /// Between neighboring ticks: a difference of values or of decimal logarithms.
+    /// Difference between neighboring ticks, of values or of decimal logarithms.
     step: f64,
-    /// The axis's ends, in ticks.
+    /// Ends of the axis, in ticks.
     pub(crate) ends: (f64, f64),
 }
 
 impl Ticks {
     fn linear(low: f64, high: f64, target: f64) -> Self {
-        // An axis across values that agree to six digits would have to label every tick with
-        // more digits than there is room for.
+        // If the values agree to six digits, the ticks would need longer labels than there is room for.
         let least = 1e-6 * low.abs().max(high.abs());
         let (low, high) =
             if high - low < least { (low - least / 2.0, high + least / 2.0) } else { (low, high) };
@@ -98,15 +97,15 @@ impl Ticks {
         Self { scale: Scale::Log, low: first * step, step, ends: (0.0, (last - first).max(1.0)) }
     }
 
-    /// The same ticks on an axis that ends just beyond the values rather than at a tick. For a
-    /// horizontal axis: there the room beyond the last value would read as time without data.
+    /// Returns the ticks on an axis that ends just beyond the values instead of at a tick. On a horizontal
+    /// axis, the room beyond the last value would look like time without data.
     pub(crate) fn close_to(mut self, values: impl Iterator<Item = f64>) -> Self {
         let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
         for place in values.map(|value| self.place(value)) {
             from = from.min(place);
             to = to.max(place);
         }
-        // A single value needs an axis around it all the same.
+        // A single value still needs an axis around it.
         if to - from > 0.5 {
             let room = 0.015 * (to - from);
             self.ends = (from - room, to + room);
@@ -114,7 +113,7 @@ impl Ticks {
         self
     }
 
-    /// Where a value that can be shown stands, in ticks from the lower end.
+    /// Returns the place of a value that can be shown, in ticks from the lower end.
     pub(crate) fn place(&self, value: f64) -> f64 {
         let value = match self.scale {
             Scale::Linear => value,
@@ -123,14 +122,14 @@ impl Ticks {
         (value - self.low) / self.step
     }
 
-    /// Letters of the longest label.
+    /// Returns the number of characters of the longest label.
     pub(crate) fn longest_label(&self) -> usize {
         let places = self.ends.0.ceil() as i64..=self.ends.1.floor() as i64;
         // An axis without ticks has no labels.
         places.map(|place| self.label(place as f64).chars().count()).max().unwrap_or(0)
     }
 
-    /// What the tick at a position says.
+    /// Returns the label of the tick at a position.
     pub(crate) fn label(&self, position: f64) -> String {
         let value = self.low + position.round() * self.step;
         match self.scale {
@@ -144,7 +143,7 @@ impl Ticks {
     }
 }
 
-/// The next step of 1, 2 or 5 times a power of ten, at or above `least`.
+/// Returns the smallest step of 1, 2 or 5 times a power of ten that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
     let mantissa = least / power;

@@ -1,41 +1,41 @@
-//! A quantity over two others: cells whose color deepens with the size of the value.
+//! Heat map of a quantity over two others: the color of a cell deepens with the size of its value.
 //!
-//! The color is one hue for each sign, more or less opaque, so that it follows the reader's color scheme like every
-//! other plot's.
+//! Each sign has one hue of varying opacity, so that the map follows the reader's color scheme like every
+//! other plot.
 
 use super::axis::Ticks;
 use super::svg::{self, Canvas, Margins, Sheet};
 use super::{Axis, Drawing, Hue, LegendEntry};
 use crate::format;
 
-/// Opacity of the smallest value; below it a cell could not be told from none.
+/// Opacity of the smallest value; with less, a cell would look like no cell.
 const FAINTEST: f64 = 0.06;
 
-/// Cells over two axes, both linear.
+/// A map of cells over two axes, both linear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// The cells.
+    /// Cells of the map.
     pub cells: Vec<HeatCell>,
     /// Unit of the values, for the legend.
     pub unit: String,
-    /// What an outlined cell is, in the legend; empty where none is.
+    /// Meaning of an outlined cell, for the legend; empty if no cell is outlined.
     pub outline: String,
 }
 
-/// One cell; one whose value is not finite is left out.
+/// One cell; a cell whose value is not finite is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeatCell {
-    /// Its ends along the horizontal axis.
+    /// Ends of the cell along the horizontal axis.
     pub x: [f64; 2],
-    /// Its ends along the vertical axis.
+    /// Ends of the cell along the vertical axis.
     pub y: [f64; 2],
-    /// Its value: [`Hue::Estimate`] where positive, [`Hue::Oracle`] where negative.
+    /// Value of the cell: [`Hue::Estimate`] if positive, [`Hue::Oracle`] if negative.
     pub value: f64,
-    /// Whether it is outlined.
+    /// `true` if the cell is outlined.
     pub outlined: bool,
 }
 
@@ -48,9 +48,9 @@ impl HeatCell {
 }
 
 impl HeatMap {
-    /// Draws the map. `description` is what a screen reader says instead.
+    /// Draws the map, with `description` as the text for screen readers.
     ///
-    /// `None` where no cell can be shown.
+    /// `None` if no cell can be shown.
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let left_out = self.cells.iter().filter(|cell| !cell.is_shown(self)).count();
@@ -107,7 +107,7 @@ impl HeatMap {
         let paint = format!("fill=\"{}\" fill-opacity=\"{:.3}\"", hue.light(), opacity(share));
         sheet.rectangle((left, bottom), (right, top), &paint, &says);
         if cell.outlined {
-            // No fill and no pointer: the cell beneath says what it holds.
+            // No fill and no pointer events: the cell below shows its content.
             let paint = format!(
                 "fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\" pointer-events=\"none\"",
                 Hue::Ink.light()
@@ -126,7 +126,7 @@ impl HeatMap {
         let largest = self.largest();
         let mut entries = Vec::new();
         for (hue, sign) in [(Hue::Estimate, 1.0), (Hue::Oracle, -1.0)] {
-            // The extreme of each sign and half of it, as deep as they are drawn.
+            // The extreme of each sign and half of it, with the opacity of the cells.
             let extreme = self.shown().map(|cell| cell.value * sign).fold(0.0, f64::max);
             for value in [extreme, extreme / 2.0].into_iter().filter(|value| *value > 0.0) {
                 let label = format::quantity(&format::significant(sign * value, 2), &self.unit);
@@ -144,7 +144,7 @@ impl HeatMap {
     }
 }
 
-/// How opaque a value is, from its share of the largest.
+/// Returns the opacity of a value from its share of the largest value.
 fn opacity(share: f64) -> f64 {
     FAINTEST + (1.0 - FAINTEST) * share.clamp(0.0, 1.0)
 }

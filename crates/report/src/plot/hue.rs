@@ -1,8 +1,8 @@
-//! The colors of every plot, in a light and a dark version.
+//! Colors of all plots, in a light and a dark version.
 //!
-//! SVG attributes hold fixed colors. Each hue has one such color that nothing else
-//! uses, and the page's style sheet, generated from the same table, turns it into a variable that
-//! follows the reader's color scheme. A plot taken out of the page keeps its light colors.
+//! SVG attributes hold fixed colors. Each hue has one such color that nothing else uses. The page's style
+//! sheet, generated from the same table, turns it into a variable that follows the reader's color scheme. A
+//! plot taken out of the page keeps its light colors.
 
 /// A color with a meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -13,13 +13,13 @@ pub enum Hue {
     Axis,
     /// Grid lines.
     Grid,
-    /// The shading of every other phase.
+    /// Shading of every other phase.
     Shade,
-    /// What was measured.
+    /// Measured data.
     Data,
     /// Closed-form least squares.
     Oracle,
-    /// What an estimator found.
+    /// Result of an estimator.
     Estimate,
     /// A second series of equal rank.
     Second,
@@ -30,7 +30,7 @@ pub enum Hue {
 }
 
 impl Hue {
-    /// Every hue, in the order of the style sheet.
+    /// All hues, in the order of the style sheet.
     pub const ALL: [Self; 10] = [
         Self::Ink,
         Self::Axis,
@@ -44,7 +44,7 @@ impl Hue {
         Self::Fourth,
     ];
 
-    /// The hue of the `index`-th of several series of equal rank; the four repeat.
+    /// Returns the hue of the `index`-th of several series of equal rank; the four hues repeat.
     #[must_use]
     pub fn of_series(index: usize) -> Self {
         match index % 4 {
@@ -55,26 +55,27 @@ impl Hue {
         }
     }
 
-    /// Name of the style sheet's variable, without its leading dashes.
+    /// Returns the name of the style sheet's variable, without its leading dashes.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.row().0
     }
 
-    /// The color on a light page, and in the SVG's attributes: `#rrggbb`.
+    /// Returns the color on a light page and in the SVG's attributes: `#rrggbb`.
     #[must_use]
     pub fn light(self) -> &'static str {
         self.row().1
     }
 
-    /// The color on a dark page: `#rrggbb`.
+    /// Returns the color on a dark page: `#rrggbb`.
     #[must_use]
     pub fn dark(self) -> &'static str {
         self.row().2
     }
 
-    /// The series are Okabe and Ito's hues, which stay apart under the common color deficiencies,
-    /// darkened or lightened until they also stand out from the page.
+    /// Returns the name and the two colors of the hue. The series have Okabe and Ito's hues, which stay
+    /// distinct under the common color deficiencies; they are darkened or lightened until they also stand out
+    /// from the page.
     fn row(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Ink => ("plot-ink", "#1b1c20", "#ecedf1"),
@@ -95,11 +96,11 @@ impl Hue {
 mod tests {
     use super::Hue;
 
-    /// Of the page, as in `templates/style.css`.
+    /// Background of the page, as in `templates/style.css`.
     const LIGHT_PAGE: &str = "#ffffff";
     const DARK_PAGE: &str = "#17181c";
 
-    /// Relative luminance by WCAG 2.
+    /// Returns the relative luminance by WCAG 2.
     fn luminance(color: &str) -> f64 {
         let channel = |at: usize| {
             let value = f64::from(u8::from_str_radix(&color[at..at + 2], 16).unwrap()) / 255.0;
@@ -118,9 +119,10 @@ mod tests {
         for hue in Hue::ALL {
             let least = match hue {
                 Hue::Ink => 7.0,
-                // Decoration: the plot reads without it.
+                // Decoration: the plot can be read without it.
                 Hue::Grid | Hue::Shade => 1.1,
-                // Text of this size has it, and the page's own color is written upon some of them.
+                // Requirement for text of this size; text in the page's own color is written on some of these
+                // hues.
                 _ => 4.5,
             };
             for (color, page) in [(hue.light(), LIGHT_PAGE), (hue.dark(), DARK_PAGE)] {

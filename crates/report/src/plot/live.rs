@@ -1,16 +1,17 @@
 //! Data of the interactive plot, as JSON inside the page.
 //!
-//! Points that share their horizontal coordinates share one table. Columns are whole steps of about a millionth of
-//! their range, each as the difference from the one before: a third of the text that decimal numbers would take, and
-//! finer than any screen. On a logarithmic axis the decimal logarithm is stored.
+//! Points with the same horizontal coordinates share one table. A column is stored as whole steps of about a
+//! millionth of its range, each as the difference from the previous one. This takes a third of the text of
+//! decimal numbers and is finer than any screen. On a logarithmic axis, the decimal logarithm is stored.
 
 use serde_json::{Value, json};
 
 use super::{Axis, Mark, Plot, Scale, Series};
 
-/// Values of all series together, beyond which every stretch keeps its lowest and highest only.
+/// Number of values of all series together beyond which every stretch keeps only its lowest and highest
+/// values.
 const MOST_VALUES: usize = 16_000;
-/// Steps across the range of a column.
+/// Number of steps across the range of a column.
 const STEPS: f64 = 1e6;
 
 /// Series with the same horizontal coordinates.
@@ -20,7 +21,8 @@ struct Table {
 }
 
 impl Plot {
-    /// The plot as `plots.js` reads it. `None` where nothing can be shown, or where a line runs back and forth.
+    /// Returns the plot in the form that `plots.js` reads; `None` if nothing can be shown or a line runs back
+    /// and forth.
     pub(super) fn live(&self, legend: impl Fn(&Series) -> Option<usize>) -> Option<String> {
         let shown = || self.series.iter().flat_map(|series| &series.points).filter(|p| self.can_show(**p));
         let ends = shown().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| {
@@ -65,11 +67,12 @@ impl Plot {
             .collect();
         let tables: Vec<Value> = tables.iter().map(Table::json).collect();
         let plot = json!({ "x": axis(&self.x), "y": axis(&self.y), "shaded": shaded, "series": series, "tables": tables });
-        // Inside a script element nothing but this sign could end it.
+        // Inside a script element, only this character could end it.
         Some(plot.to_string().replace('<', "\\u003c"))
     }
 
-    /// Rising horizontal coordinates of a series, and its vertical ones: not a number where its line is interrupted.
+    /// Returns the increasing horizontal coordinates of a series and its vertical ones, NaN where its line is
+    /// interrupted.
     fn columns(&self, series: &Series, ends: (f64, f64)) -> Option<(Vec<f64>, Vec<f64>)> {
         let mut points: Vec<(f64, f64)> = Vec::with_capacity(series.points.len());
         for &(x, y) in &series.points {
@@ -100,8 +103,8 @@ impl Plot {
 }
 
 impl Table {
-    /// About so many rows: of every stretch the lowest and the highest of each column, and where a line is
-    /// interrupted.
+    /// Returns the table thinned to about `rows` rows: of every stretch, the lowest and the highest value of
+    /// each column, and interruptions of lines.
     fn thinned(&self, rows: usize) -> Self {
         let stretch = (self.x.len() * 2 * self.columns.len()).div_ceil(rows.max(4)).max(1);
         let mut kept = vec![0, self.x.len().saturating_sub(1)];
@@ -129,14 +132,15 @@ impl Table {
     }
 }
 
-/// Whole steps from value to value; `null` where there is none. Rising columns rise by a step at least, so that no two
-/// points share a horizontal coordinate: an interruption keeps a place of its own.
+/// Encodes a column as whole steps from value to value, `null` where there is no value. A rising column rises
+/// by at least one step, so that no two points share a horizontal coordinate: an interruption keeps its own
+/// place.
 fn encoded(column: &[f64], rising: bool) -> Value {
     let finite = || column.iter().copied().filter(|value| value.is_finite());
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    // A column without a number holds steps from nowhere: all of them are `null`.
+    // A column without numbers has no starting value: all its steps are `null`.
     let from = finite().next().unwrap_or(0.0);
-    // A power of ten, so that a round number stays one.
+    // A power of ten, so that a round number stays round.
     let step = if high > low { 10f64.powf(((high - low) / STEPS).log10().floor()) } else { 1.0 };
     let mut last: Option<i64> = None;
     let deltas: Vec<Option<i64>> = column
@@ -147,7 +151,7 @@ fn encoded(column: &[f64], rising: bool) -> Value {
                 if let (true, Some(last)) = (rising, last) {
                     at = at.max(last + 1);
                 }
-                // The first is counted from the column's own beginning.
+                // The first step is counted from the column's starting value.
                 let delta = at - last.unwrap_or(0);
                 last = Some(at);
                 delta
@@ -197,7 +201,7 @@ mod tests {
         serde_json::from_str(&plot.live(|_| Some(0)).unwrap()).unwrap()
     }
 
-    /// As `plots.js` does it.
+    /// Decodes a column as `plots.js` does.
     fn decoded(column: &Value) -> Vec<Option<f64>> {
         let mut at = 0;
         let (from, step) = (column["from"].as_f64().unwrap(), column["step"].as_f64().unwrap());

@@ -1,12 +1,12 @@
-//! Plots as inline SVG: the one place that draws.
+//! Plots as inline SVG. All drawing of the crate is here.
 //!
-//! A [`Plot`] of two quantities, [`DotRows`], one quantity by name, or a [`HeatMap`], one over two others, say
-//! what is to be seen; `draw` gives a [`Drawing`], for which the style sheet of the page supplies the colors
-//! (see [`Hue`]). Each plot is drawn twice, for a wide and
-//! for a narrow page, because text in an SVG shrinks with it: the page shows one of the two.
+//! A [`Plot`] shows two quantities, [`DotRows`] show one quantity by name, and a [`HeatMap`] shows one
+//! quantity over two others. `draw` returns a [`Drawing`], whose colors come from the style sheet of the page
+//! (see [`Hue`]). Each plot is drawn twice, for a wide and for a narrow page, because text in an SVG shrinks
+//! with it; the page shows one of the two.
 //!
-//! The legend is not part of the SVG. The page sets it in HTML, where it wraps and where the
-//! names in it, which come from files, are escaped like all other text.
+//! The legend is not part of the SVG. The page sets it in HTML, where it wraps and where its names, which
+//! come from files, are escaped like all other text.
 
 mod axis;
 mod heat;
@@ -24,13 +24,13 @@ use parts::Run;
 pub use parts::{BREAK, Drawing, LegendEntry, Mark, Plot, Series};
 pub use rows::{DotRow, DotRows};
 
-/// Beyond this many points in all its lines, a plot looks the same with fewer.
+/// Number of points in all lines of a plot beyond which it looks the same with fewer.
 const MOST_POINTS: usize = 2_000;
 
 impl Plot {
-    /// Draws the plot. `description` is what a screen reader says instead.
+    /// Draws the plot, with `description` as the text for screen readers.
     ///
-    /// `None` where no series has a point that the axes can show.
+    /// `None` if no series has a point that the axes can show.
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let mut runs: Vec<Vec<Run>> = self.series.iter().map(|s| self.runs(s)).collect();
@@ -73,7 +73,7 @@ impl Plot {
         self.x.can_show(point.0) && self.y.can_show(point.1)
     }
 
-    /// The unbroken stretches of a series that can be shown.
+    /// Returns the uninterrupted runs of points of a series that can be shown.
     fn runs(&self, series: &Series) -> Vec<Run> {
         series
             .points

@@ -1,6 +1,6 @@
-//! One quantity by name: a row for each name, dots along a horizontal axis.
+//! Dot plot of one quantity by name: a row for each name, dots along a horizontal axis.
 //!
-//! On a wide page the names stand left of the axis, on a narrow one each above its own row, where it
+//! On a wide page the names are left of the axis. On a narrow page each name is above its own row, where it
 //! has the whole width.
 
 use super::axis::Ticks;
@@ -8,41 +8,41 @@ use super::svg::{self, Canvas, LETTER, Margins, Pen, Sheet};
 use super::{Axis, Drawing, Hue, LegendEntry};
 use crate::format;
 
-/// Between the names and the axis on a wide page, in SVG units.
+/// Distance between the names and the axis on a wide page, in SVG units.
 const GAP: f64 = 10.0;
-/// Beyond this many letters a name is cut.
+/// Largest number of characters of a name; longer names are cut.
 const MOST_LETTERS: usize = 44;
-/// No axis is longer than so many rows: beyond, a table reads better than a plot.
+/// Largest number of rows; beyond it, a table is easier to read than a plot.
 const MOST_ROWS: usize = 200;
 
-/// Rows of dots.
+/// Rows of dots along one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotRows {
-    /// The axis of the quantity.
+    /// Axis of the quantity.
     pub x: Axis,
-    /// The rows, from top to bottom.
+    /// Rows from top to bottom.
     pub rows: Vec<DotRow>,
-    /// What the dots of [`DotRow::value`] are, in the legend.
+    /// Meaning of the dots of [`DotRow::value`], for the legend.
     pub value_label: String,
-    /// What the rings of [`DotRow::extreme`] are, in the legend.
+    /// Meaning of the rings of [`DotRow::extreme`], for the legend.
     pub extreme_label: String,
-    /// A dashed line across all rows: its name and its place on the axis.
+    /// Name and place of a dashed line across all rows.
     pub level: Option<(String, f64)>,
 }
 
-/// Letters of the longest number on an axis.
+/// Number of characters of the longest number on an axis.
 const LONGEST_NUMBER: f64 = 9.0;
 
-/// One name and its values; `None`, and what the axis cannot show, has no mark.
+/// One name and its values; `None`, and values that the axis cannot show, have no mark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotRow {
-    /// What the row is of.
+    /// Name of the row.
     pub name: String,
-    /// Drawn as a dot.
+    /// Value drawn as a dot.
     pub value: Option<f64>,
-    /// Drawn as a ring, joined to the dot.
+    /// Value drawn as a ring, joined to the dot.
     pub extreme: Option<f64>,
-    /// Drawn as a bar behind the dot; not at all where the axis cannot show both ends.
+    /// Interval drawn as a bar behind the dot; not drawn unless the axis can show both ends.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -52,11 +52,11 @@ impl DotRow {
     }
 }
 
-/// What differs between the two drawings.
+/// Differences between the wide and the narrow drawing.
 struct Form {
     canvas: &'static Canvas,
     row_height: f64,
-    /// Whether names stand above their rows.
+    /// `true` if names are above their rows.
     above: bool,
 }
 
@@ -64,9 +64,9 @@ const WIDE: Form = Form { canvas: &svg::WIDE, row_height: 25.0, above: false };
 const NARROW: Form = Form { canvas: &svg::NARROW, row_height: 37.0, above: true };
 
 impl DotRows {
-    /// Draws the rows. `description` is what a screen reader says instead.
+    /// Draws the rows, with `description` as the text for screen readers.
     ///
-    /// `None` where no row has a value that the axis can show.
+    /// `None` if no row has a value that the axis can show.
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let rows = self.rows.get(..self.rows.len().min(MOST_ROWS)).unwrap_or_default();
@@ -162,7 +162,7 @@ impl DotRows {
     }
 }
 
-/// Above the first row.
+/// Room above the first row.
 const TOP: f64 = 8.0;
 
 impl Form {
@@ -170,19 +170,20 @@ impl Form {
         rows.len() as f64 * self.row_height + svg::below(self.canvas) + TOP
     }
 
-    /// Right of the axis, and left of it on a narrow page, half of a tick's label.
+    /// Returns the margins. Right of the axis, and left of it on a narrow page, there is room for half of a
+    /// tick's label.
     fn margins(&self, rows: &[DotRow]) -> Margins {
-        // Without rows no name needs room.
+        // Without rows, no name needs room.
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
         let names = letters as f64 * LETTER * self.canvas.tick_size;
         let left = if self.above { 24.0 } else { names + GAP + 4.0 };
-        // The last number of the axis stands half beyond its end.
+        // Half of the last number extends beyond the end of the axis.
         let right = (0.5 * LONGEST_NUMBER * LETTER * self.canvas.tick_size).max(24.0);
         Margins { left, top: TOP, right, bottom: svg::below(self.canvas) }
     }
 }
 
-/// The middle of a row on an axis that counts rows from the bottom.
+/// Returns the middle of a row, on an axis that counts rows from the bottom.
 fn place(index: usize, count: usize) -> f64 {
     count as f64 - index as f64 - 0.5
 }
@@ -242,9 +243,9 @@ mod tests {
         assert_eq!(bars(&plot), 0);
         plot.rows[0].interval = Some([1e-4, 1e-2]);
         assert_eq!(bars(&plot), 1);
-        // No ring anywhere, no word about rings.
+        // Without rings, there is no legend entry for rings.
         assert_eq!(plot.draw("").unwrap().legend.len(), 2);
-        // One end that a logarithm does not have: the dot alone.
+        // One end has no logarithm: only the dot is drawn.
         plot.rows[0].interval = Some([0.0, 1e-2]);
         let drawing = plot.draw("").unwrap();
         assert_eq!(drawing.left_out, 1);
@@ -267,7 +268,7 @@ mod tests {
         plot.rows[0].name = format!("x {}", "y".repeat(100));
         let drawing = plot.draw("").unwrap();
         assert!(drawing.wide.contains(">x yyy") && drawing.wide.contains("y…<"));
-        // Under the pointer stands the whole name.
+        // The tooltip shows the whole name.
         assert!(drawing.wide.contains(&format!("<title>x {}", "y".repeat(100))));
     }
 

@@ -1,4 +1,4 @@
-//! SVG text: a sheet with axes, and the marks that are put upon it.
+//! SVG text: a sheet with axes, and the marks on it.
 
 use std::fmt::Write;
 
@@ -6,15 +6,15 @@ use super::axis::Ticks;
 use super::parts::Run;
 use super::{Hue, Mark, Plot, Series};
 
-/// The canvas, in SVG units that are CSS pixels where the page shows it full size.
+/// A canvas, in SVG units, which are CSS pixels if the page shows it at full size.
 pub(super) struct Canvas {
     pub(super) class: &'static str,
     pub(super) width: f64,
     pub(super) height: f64,
-    /// Font sizes of the axis labels and of the ticks.
+    /// Font size of the axis labels; `tick_size` is that of the tick labels.
     pub(super) label_size: f64,
     pub(super) tick_size: f64,
-    /// About how many ticks there is room for.
+    /// Approximate number of ticks that there is room for.
     pub(super) x_ticks: f64,
     y_ticks: f64,
     pub(super) dot_radius: f64,
@@ -45,18 +45,18 @@ pub(super) const NARROW: Canvas = Canvas {
     line_width: 1.8,
 };
 
-/// Dash patterns, shared by the plots and the swatches. Dashes and gaps are of equal length: where a
-/// dashed line lies on a drawn-through one, both are seen in turn.
+/// Dash patterns, shared by the plots and the swatches. Dashes and gaps have equal lengths: where a dashed
+/// line lies on a solid one, both are visible in turn.
 pub(super) const DASHES: &str = "8 8";
 const DOTS: &str = "2 3";
 
-/// About the width of a letter, in units of the font size.
+/// Approximate width of a character, in units of the font size.
 pub(super) const LETTER: f64 = 0.56;
-/// Length of a tick, and the room between a tick and what it says.
+/// Length of a tick, in SVG units; `ROOM` is the distance between a tick and its label.
 const TICK: f64 = 5.0;
 const ROOM: f64 = 4.0;
 
-/// Room around the axes, in SVG units.
+/// Margins around the axes, in SVG units.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Margins {
     pub(super) left: f64,
@@ -66,19 +66,20 @@ pub(super) struct Margins {
 }
 
 impl Margins {
-    /// Beside rows of ticks with labels: `letters` is the length of the longest at the left.
+    /// Returns the margins around axes with labeled ticks; `letters` is the length of the longest label on
+    /// the left.
     pub(super) fn around(canvas: &Canvas, letters: usize) -> Self {
         let ticks = TICK + ROOM + letters as f64 * LETTER * canvas.tick_size;
         Self { left: 1.4 * canvas.label_size + ROOM + ticks, top: 10.0, right: 24.0, bottom: below(canvas) }
     }
 }
 
-/// Room for the ticks of the horizontal axis, their labels and the axis's label.
+/// Returns the room for the ticks of the horizontal axis, their labels and the axis label.
 pub(super) fn below(canvas: &Canvas) -> f64 {
     26.0 + canvas.tick_size + canvas.label_size
 }
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pen {
     pub(super) hue: Hue,
@@ -86,7 +87,7 @@ pub(super) struct Pen {
     pub(super) dashes: Option<&'static str>,
 }
 
-/// A drawing in the making. Marks are placed in ticks of its axes, as [`Ticks::place`] has them.
+/// An unfinished drawing. Marks are placed in ticks of its axes, as by [`Ticks::place`].
 pub(super) struct Sheet<'a> {
     canvas: &'static Canvas,
     height: f64,
@@ -107,25 +108,25 @@ impl<'a> Sheet<'a> {
         Self { canvas, height, margins, x, y_ends, body: String::new() }
     }
 
-    /// Horizontal place in SVG units.
+    /// Returns a horizontal place in SVG units.
     pub(super) fn x(&self, place: f64) -> f64 {
         let width = self.canvas.width - self.margins.left - self.margins.right;
         self.margins.left + width * (place - self.x.ends.0) / (self.x.ends.1 - self.x.ends.0)
     }
 
-    /// Vertical place in SVG units.
+    /// Returns a vertical place in SVG units.
     pub(super) fn y(&self, place: f64) -> f64 {
         let bottom = self.height - self.margins.bottom;
         bottom - (bottom - self.margins.top) * (place - self.y_ends.0) / (self.y_ends.1 - self.y_ends.0)
     }
 
-    /// Writes text that has been escaped already, or holds nothing to escape.
+    /// Writes text that is already escaped, or contains nothing to escape.
     fn write(&mut self, text: std::fmt::Arguments<'_>) {
         // Writing to memory does not fail.
         let _ = self.body.write_fmt(text);
     }
 
-    /// Axes, their grid and ticks, and their labels; `y` where the vertical axis has values.
+    /// Draws the axes with grid, ticks and labels; `y` is given if the vertical axis has values.
     pub(super) fn axes(&mut self, labels: (&str, &str), y: Option<&Ticks>) {
         let (left, right) = (self.margins.left, self.canvas.width - self.margins.right);
         let (top, bottom) = (self.margins.top, self.height - self.margins.bottom);
@@ -144,7 +145,7 @@ impl<'a> Sheet<'a> {
 
         let size = self.canvas.tick_size;
         let said: Vec<String> = x_places.iter().map(|place| self.x.label(*place)).collect();
-        // Without ticks no label needs room.
+        // Without ticks, no label needs room.
         let widest = said.iter().map(|words| words.chars().count()).max().unwrap_or(0) as f64 * LETTER * size;
         let spacing = (self.x(1.0) - self.x(0.0)).max(1.0);
         let every = ((widest + 2.0 * ROOM) / spacing).ceil().max(1.0) as usize;
@@ -207,8 +208,8 @@ impl<'a> Sheet<'a> {
         ));
     }
 
-    /// A circle about a place in SVG units; a ring where `ring` gives its line's width. `says` is shown under the
-    /// pointer.
+    /// Draws a circle around a place in SVG units; a ring if `ring` gives a line width. `says` is shown as a
+    /// tooltip.
     pub(super) fn circle(&mut self, at: (f64, f64), radius: f64, hue: Hue, ring: Option<f64>, says: &str) {
         let color = hue.light();
         let paint = match ring {
@@ -219,7 +220,7 @@ impl<'a> Sheet<'a> {
         self.close("circle", says);
     }
 
-    /// A rectangle between two corners in SVG units.
+    /// Draws a rectangle between two corners in SVG units.
     pub(super) fn rectangle(&mut self, one: (f64, f64), other: (f64, f64), paint: &str, says: &str) {
         self.write(format_args!(
             "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" {paint}",
@@ -239,7 +240,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// The SVG, whose size, font and colors the page chooses.
+    /// Returns the SVG; the page chooses its size, font and colors.
     pub(super) fn finish(self, description: &str) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{}\" viewBox=\"0 0 {} {}\" \
@@ -258,7 +259,7 @@ fn dashes(pattern: Option<&str>) -> String {
     pattern.map(|pattern| format!(" stroke-dasharray=\"{pattern}\"")).unwrap_or_default()
 }
 
-/// `runs` holds the points of each series of the plot, in unbroken stretches.
+/// Renders a plot. `runs` holds the points of each series, in uninterrupted runs.
 pub(super) fn render(
     plot: &Plot,
     runs: &[Vec<Run>],
@@ -286,7 +287,7 @@ pub(super) fn render(
     Some(sheet.finish(description))
 }
 
-/// Draws an unbroken stretch of a series.
+/// Draws an uninterrupted run of a series.
 fn put(sheet: &mut Sheet<'_>, series: &Series, points: &[(f64, f64)], ends: (f64, f64)) {
     let pen = |dashes| Pen { hue: series.hue, width: sheet.canvas.line_width, dashes };
     let height = points.first().map_or(0.0, |point| point.1);
@@ -297,7 +298,7 @@ fn put(sheet: &mut Sheet<'_>, series: &Series, points: &[(f64, f64)], ends: (f64
         Mark::Line | Mark::Dashes | Mark::DottedLine if points.len() > 1 => {
             sheet.path(points, pen(pattern(series.mark)));
         }
-        // A line needs two points; a single one is to be seen all the same.
+        // A line needs two points, but a single point must be visible too.
         Mark::Dots | Mark::Line | Mark::Dashes | Mark::DottedLine => {
             for point in points {
                 let at = (sheet.x(point.0), sheet.y(point.1));
@@ -315,7 +316,7 @@ fn pattern(mark: Mark) -> Option<&'static str> {
     }
 }
 
-/// Sample of a series' mark, for the legend.
+/// Returns a sample of a series' mark, for the legend.
 pub(super) fn swatch(series: &Series) -> String {
     let color = series.hue.light();
     swatch_of(&match series.mark {
@@ -334,7 +335,7 @@ pub(super) fn swatch_of(shape: &str) -> String {
     )
 }
 
-/// An axis label of bearable length: it may quote a unit from a file.
+/// Shortens an axis label, which may quote a unit from a file.
 fn plain(label: &str) -> String {
     label.chars().take(60).collect()
 }

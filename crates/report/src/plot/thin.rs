@@ -1,7 +1,7 @@
-//! Fewer points for the same line.
+//! Thinning of lines.
 
-/// At most about `most` points of a line, first and last kept, and of every stretch between them
-/// its lowest and its highest: no peak is lost.
+/// Returns at most about `most` points of a line: the first, the last, and of every stretch between them the
+/// lowest and the highest, so that no peak is lost.
 pub(crate) fn thin(points: &[(f64, f64)], most: usize) -> Vec<(f64, f64)> {
     if points.len() <= most.max(4) {
         return points.to_vec();

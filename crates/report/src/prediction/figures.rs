@@ -1,4 +1,4 @@
-//! The plots of a problem.
+//! Plots of one problem of a prediction study.
 
 use results::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy, SplitKind};
 
@@ -7,20 +7,20 @@ use super::study::scored;
 use crate::figures::{Figure, csv, figure, number, time_axis};
 use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 
-/// Methods whose functions are drawn.
+/// Largest number of methods whose functions are drawn.
 const MOST_FUNCTIONS: usize = 3;
-/// What `predictions.csv` calls the best exponential.
+/// Name of the best exponential in `predictions.csv`.
 const EXPONENTIAL: &str = "best-exponential";
-/// Errors that agree to within this share are those of one line.
+/// Relative difference below which two errors count as those of the same line.
 const EQUAL: f64 = 1e-6;
 
-/// A function as it is drawn: who, and ln A at the times of the peaks.
+/// A drawn function: the method's title, and ln A at the times of the peaks.
 struct Function<'a> {
     title: &'a str,
     values: Vec<f64>,
 }
 
-/// The peaks of the split at the end, in the order of time.
+/// Peaks of the split at the end, in the order of time.
 struct Peaks<'a> {
     rows: Vec<&'a PredictionCsvRow>,
     exponential: Vec<f64>,
@@ -75,7 +75,7 @@ fn peaks<'a>(
 }
 
 impl Peaks<'_> {
-    /// The series of a plot; `place` says where a value of the peak with a number stands.
+    /// Returns the series of a plot; `place` maps the number of a peak and its value to a vertical place.
     fn series(&self, place: impl Fn(usize, f64) -> f64) -> Vec<Series> {
         let points = |values: &mut dyn Iterator<Item = f64>| -> Vec<(f64, f64)> {
             let times = self.rows.iter().map(|row| row.time_s);
@@ -91,7 +91,7 @@ impl Peaks<'_> {
             series.push(Series {
                 label: function.title.to_owned(),
                 hue: Hue::of_series(index),
-                // Two forms of one method may lie on each other.
+                // Two forms of one method may coincide.
                 mark: if index.is_multiple_of(2) { Mark::Line } else { Mark::Dashes },
                 points: points(&mut function.values.iter().copied()),
             });
@@ -119,7 +119,7 @@ impl Peaks<'_> {
         series
     }
 
-    /// The stretch of time that was held out.
+    /// Returns the stretch of time that was held out.
     fn shaded(&self) -> Vec<(f64, f64)> {
         let mut held = self.rows.iter().filter(|row| row.held_out).map(|row| row.time_s);
         let first = held.next();
@@ -143,7 +143,7 @@ impl Peaks<'_> {
     }
 }
 
-/// In which words the record is named under a plot: simulated and measured are always told apart.
+/// Returns the name of the record under a plot; it always distinguishes simulated from measured records.
 fn named(problem: &ProblemRow) -> String {
     format!("{} ({})", problem.title, crate::verdict::kind(problem.origin))
 }

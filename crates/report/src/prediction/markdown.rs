@@ -1,4 +1,4 @@
-//! The tables of a study of held-out prediction as GitHub Markdown.
+//! Tables of a study of held-out prediction as GitHub Markdown.
 
 use results::{PredictionResult, ProblemOutcome, ProblemRow};
 

@@ -1,4 +1,4 @@
-//! The page on methods scored on peaks that they did not see, and its tables as Markdown.
+//! Page of a study of held-out prediction, and its tables as Markdown.
 
 mod figures;
 mod markdown;
@@ -23,13 +23,13 @@ use crate::{ReportError, RunTexts};
 pub(crate) use markdown::markdown;
 use study::{facts, headline, held_out, laws, origin};
 
-/// One problem as it stands on the page.
+/// One problem on the page.
 struct ProblemView<'a> {
-    /// Name of its anchor in the page.
+    /// Name of the problem's anchor in the page.
     id: String,
     title: &'a str,
     origin: Origin,
-    /// Why there is nothing else; empty where there is.
+    /// Reason why the problem was not studied; empty if it was.
     absent: &'a str,
     facts: Vec<Fact>,
     verdict: &'a [String],

@@ -1,4 +1,4 @@
-//! A study of held-out prediction as it might have been, for the tests.
+//! A made-up study of held-out prediction for the tests.
 
 use results::{
     Coverage, ExponentialScores, Family, HeldOutScore, LawSummary, MethodScores, Origin, PairedComparison,
@@ -146,7 +146,7 @@ fn rows() -> Vec<PredictionCsvRow> {
     rows
 }
 
-/// The folder of a study, which tests change before they make its report.
+/// Folder of a study, which tests change before they make its report.
 pub(crate) struct Folder {
     pub(crate) name: String,
     pub(crate) result: PredictionResult,

@@ -1,11 +1,11 @@
-//! The table of a problem: a row for each method.
+//! Table of a problem: a row for each method.
 
 use results::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
 use crate::format::{count, duration, fixed, significant};
 use crate::tables::{ScoreRow, ScoreTable, whole};
 
-/// How to read these tables.
+/// Explanation of these tables.
 pub(super) const READING: [&str; 4] = [
     "Errors are root mean squares of predicted less observed ln A over the held-out peaks, of a simulation the \
      median over the draws that all methods were fitted on; Â/A is the same as a relative error of the amplitude, where a motion predicted to \
@@ -26,7 +26,8 @@ pub(super) const READING: [&str; 4] = [
      independent.",
 ];
 
-/// The table of a problem; the row that stands out is the best exponential, which the others are compared with.
+/// Returns the table of a problem. The highlighted row is the best exponential, with which the others are
+/// compared.
 pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     let has_truth = study.law.is_some();
     let mut columns = vec!["method", "error inside", "error beyond", "Â/A beyond, %"];
@@ -55,10 +56,10 @@ pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     ScoreTable { columns, rows }
 }
 
-/// What rows stand in the order of.
+/// Returns the error by which rows are ordered.
 pub(super) fn error(row: &PredictionRow) -> f64 {
     let score = super::study::scored(row).and_then(|scores| scores.extrapolation.as_ref());
-    // Without a score, or with one that is not finite, a row stands last.
+    // A row without a score, or with a score that is not finite, comes last.
     score.map(|score| score.rms_log_error).filter(|error| !error.is_nan()).unwrap_or(f64::INFINITY)
 }
 
@@ -115,7 +116,7 @@ fn held_out(inside: Option<&HeldOutScore>, beyond: Option<&HeldOutScore>, has_tr
     cells
 }
 
-/// A share in percent with its interval, or as a count where there is none.
+/// Returns a share in percent with its interval, or as a count if there is no interval.
 fn share(coverage: Option<&Coverage>) -> String {
     let Some(coverage) = coverage else { return dash() };
     match coverage.interval_95 {

@@ -1,4 +1,4 @@
-//! What a study says in words, on the page and in Markdown.
+//! Sentences on a prediction study, for the page and for Markdown.
 
 use crate::format;
 use crate::tables::{Fact, fact, whole};
@@ -8,7 +8,7 @@ use results::{
     ProblemStudy, SplitSummary,
 };
 
-/// What the problem is, in symbols or by its file.
+/// Returns the facts about a problem: its law, or its file.
 pub(super) fn facts(study: &ProblemStudy) -> Vec<Fact> {
     let mut facts = Vec::new();
     if let Some(law) = &study.law {
@@ -45,7 +45,7 @@ pub(super) fn facts(study: &ProblemStudy) -> Vec<Fact> {
     facts
 }
 
-/// The laws that methods discovered, in sentences.
+/// Returns sentences on the laws that methods discovered.
 pub(super) fn laws(study: &ProblemStudy) -> Vec<String> {
     let law = |row: &PredictionRow| {
         let scores = scored(row)?;
@@ -86,7 +86,8 @@ pub(super) fn studied(result: &PredictionResult) -> impl Iterator<Item = &Proble
     result.problems.iter().filter(|row| matches!(row.outcome, ProblemOutcome::Studied(_)))
 }
 
-/// The page's verdict counts; what the numbers carry, each problem's own sentences say.
+/// Returns the verdict of the page, which only counts; the conclusions from the numbers are in each problem's
+/// own sentences.
 pub(super) fn headline(result: &PredictionResult) -> Verdict {
     let of = |origin| studied(result).filter(|row| row.origin == origin).count();
     let (simulated, measured) = (of(results::Origin::Simulated), of(results::Origin::Measured));

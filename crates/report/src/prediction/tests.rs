@@ -1,4 +1,4 @@
-//! Of the whole page and its tables.
+//! Tests of the whole page and its tables.
 
 use results::{PredictionOutcome, ProblemOutcome, ProblemStudy};
 

@@ -1,4 +1,4 @@
-//! The page on several rigs of one build.
+//! Page of several rigs of one build.
 
 #[cfg(test)]
 mod tests;
@@ -23,29 +23,29 @@ struct RigsPage<'a> {
     coefficients: Vec<CoefficientView<'a>>,
 }
 
-/// A rig with its own answer.
+/// A rig with its own diagnosis.
 struct RigView<'a> {
     name: &'a str,
     folder: &'a str,
     summary: &'a str,
     nameless: String,
-    /// Its page, relative to this one.
+    /// Address of its page, relative to this one.
     link: String,
 }
 
-/// A cell of a table under the name of its column.
+/// A cell of a table with the name of its column.
 struct Cell<'a> {
     column: &'a str,
     text: String,
 }
 
-/// A class of effects on all rigs and on each.
+/// A class of effects on all rigs together and on each rig.
 struct ClassView<'a> {
     title: String,
     /// `certain`, `likely`, `open` or `unlikely`.
     standing: &'static str,
     probability: String,
-    /// Length of its bar in percent.
+    /// Length of the bar in percent.
     bar: String,
     cells: Vec<Cell<'a>>,
 }
@@ -167,7 +167,7 @@ fn rig(row: &RigRow) -> RigView<'_> {
     }
 }
 
-/// A name as a step of a relative address.
+/// Encodes a name as a step of a relative address.
 pub(crate) fn encoded(name: &str) -> String {
     name.bytes()
         .map(|byte| match byte {

@@ -1,4 +1,4 @@
-//! Of the page on several rigs.
+//! Tests of the page of several rigs.
 
 use serde_json::{Value, json};
 

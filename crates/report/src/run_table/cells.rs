@@ -1,4 +1,4 @@
-//! What stands in which column.
+//! Columns and cells of a table of runs.
 
 use results::{RunState, RunTable, RunTableRow, RunTableTask};
 use serde_json::Value;
@@ -8,26 +8,26 @@ use crate::format::{count, duration, interval, significant};
 /// A column of the table.
 pub(super) struct Column {
     pub(super) title: String,
-    /// Whether it holds words, which stand on the left.
+    /// `true` if the column holds words, which are aligned to the left.
     pub(super) words: bool,
 }
 
-/// A row as it stands in the table.
+/// A row of the table.
 pub(super) struct RowView {
     pub(super) name: String,
-    /// The method, then a cell for each key in which the runs differ.
+    /// The method, followed by a cell for each key in which the runs differ.
     pub(super) settings: Vec<String>,
-    /// A cell for each of [`NUMBERS`]; none where there is no estimate.
+    /// A cell for each of [`NUMBERS`]; empty without an estimate.
     pub(super) numbers: Vec<String>,
-    /// Why there is no estimate.
+    /// Reason for a missing estimate.
     pub(super) reason: String,
     pub(super) state: &'static str,
-    /// Class of the state's tag.
+    /// Style-sheet class of the state's tag.
     pub(super) tone: &'static str,
     pub(super) is_bad: bool,
 }
 
-/// Titles of the columns behind the settings.
+/// Titles of the columns after the settings.
 pub(super) const NUMBERS: [&str; 9] = [
     "ζ",
     "± of ζ",
@@ -40,7 +40,7 @@ pub(super) const NUMBERS: [&str; 9] = [
     "time",
 ];
 
-/// Every column, from left to right.
+/// Returns all columns, from left to right.
 pub(super) fn columns(table: &RunTable) -> Vec<Column> {
     let words = |title: &str| Column { title: title.to_owned(), words: true };
     let mut columns = vec![words("run"), words("state"), words("method")];
@@ -83,7 +83,7 @@ pub(super) fn row(table: &RunTable, row: &RunTableRow) -> RowView {
     }
 }
 
-/// What a run is called in its row: of a sweep by its number, else by its folder.
+/// Returns the name of a run in its row: its number in a sweep, else its folder.
 pub(super) fn short_name(table: &RunTable, run: &str) -> String {
     let last = run.trim_end_matches('/').rsplit('/').next().unwrap_or(run);
     let number = last.split('-').next().unwrap_or(last);
@@ -92,7 +92,7 @@ pub(super) fn short_name(table: &RunTable, run: &str) -> String {
     if is_number { number } else { last }.to_owned()
 }
 
-/// A value of the configuration, text without its quotes.
+/// Formats a value of the configuration; text has no quotes.
 pub(super) fn setting(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -100,12 +100,12 @@ pub(super) fn setting(value: &Value) -> String {
     }
 }
 
-/// An error in percent, without the sign; an exact zero is one.
+/// Formats an error in percent, without the percent sign; an exact zero as `0`.
 fn gap(percent: f64) -> String {
     if percent == 0.0 { "0".to_owned() } else { significant(percent, 2) }
 }
 
-/// What a run's state is called, and its class.
+/// Returns the name of a run's state, and its style-sheet class.
 fn state(row: &RunTableRow) -> (&'static str, &'static str) {
     match (row.state, row.pass) {
         (RunState::Failed, _) => ("FAILED", "bad"),

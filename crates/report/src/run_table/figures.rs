@@ -39,7 +39,7 @@ fn groups(table: &RunTable) -> Vec<Group<'_>> {
 }
 
 impl Group<'_> {
-    /// What stands beside its row of a plot.
+    /// Label beside its row of a plot.
     fn short_name(&self, table: &RunTable) -> String {
         self.rows.first().map_or_else(String::new, |row| short_label(table, row, &|key| key != "seed"))
     }

@@ -1,10 +1,10 @@
-//! What a table of runs says in words.
+//! Verdict and explanation of a table of runs.
 
 use crate::format::count;
 use crate::verdict::{Tone, Verdict};
 use results::RunTable;
 
-/// How to read the table.
+/// Explanation of the table.
 pub(super) const READING: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \
      envelope; the worst is the largest over a run’s seeds. ± and the 95 % interval are the method’s own, under independent \
      residuals. A run passes where every seed is within its stated tolerance.";

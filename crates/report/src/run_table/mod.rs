@@ -1,4 +1,4 @@
-//! The page on many runs: a sweep, or runs put side by side.
+//! Page of many runs: those of a sweep, or runs put side by side.
 
 mod cells;
 mod figures;
@@ -19,9 +19,9 @@ use headline::{READING, headline, whole};
 
 pub use text::{csv, markdown, text_cells};
 
-/// Rows on the page; `table.csv` has all.
+/// Largest number of rows on the page; `table.csv` has all rows.
 const MOST_ROWS: usize = 2_000;
-/// Longest result, in bytes, that the page holds in full.
+/// Largest size of a result that the page contains in full, in bytes.
 const MOST_TEXT: usize = 300_000;
 
 #[derive(Template)]
@@ -33,7 +33,7 @@ struct RunTablePage<'a> {
     reading: &'static str,
     shortened: String,
     columns: Vec<Column>,
-    /// Columns that hold numbers.
+    /// Number of columns with numbers.
     numbers: usize,
     rows: Vec<RowView>,
 }
@@ -78,7 +78,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
     finish(&page)
 }
 
-/// That of the record, where all runs share it.
+/// Returns the origin of the record, if all runs share it.
 fn origin(table: &RunTable) -> Origin {
     let stated = table.rows.iter().filter_map(|row| row.origin);
     verdict::origin_of_all(

@@ -1,4 +1,4 @@
-//! Of the page and the texts on many runs.
+//! Tests of the page and the texts on many runs.
 
 use results::{Origin, Reached, RunState, RunTable, RunTableRow, RunTableTask, SweepAxis};
 use serde_json::{Value, json};

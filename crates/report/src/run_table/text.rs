@@ -1,4 +1,4 @@
-//! The table of runs as CSV, as Markdown, and as cells for a terminal.
+//! Table of runs as CSV, as Markdown, and as cells for a terminal.
 
 use results::{Reached, RunTable, RunTableRow};
 
@@ -7,7 +7,7 @@ use super::headline::{READING, headline};
 use crate::comparison::markdown::{escape, grid};
 use crate::figures::number;
 
-/// The table as CSV with a header, every number with all its digits; cells of absent numbers are empty.
+/// Returns the table as CSV with a header. Numbers have all their digits; cells of missing numbers are empty.
 #[must_use]
 pub fn csv(table: &RunTable) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -30,7 +30,7 @@ pub fn csv(table: &RunTable) -> String {
         "origin",
         "reason",
     ]);
-    // Writing to memory fails on no input; where it did, the table would end early.
+    // Writing to memory does not fail; if it did, the table would end early.
     let mut written = writer.write_record(header).is_ok();
     for row in &table.rows {
         written = written && writer.write_record(record(table, row)).is_ok();
@@ -59,7 +59,7 @@ fn record(table: &RunTable, row: &RunTableRow) -> Vec<String> {
     cells
 }
 
-/// The verdict and the table as GitHub Markdown.
+/// Returns the verdict and the table as GitHub Markdown.
 #[must_use]
 pub fn markdown(table: &RunTable) -> String {
     let verdict = headline(table);
@@ -89,8 +89,8 @@ pub fn markdown(table: &RunTable) -> String {
     blocks.join("\n\n") + "\n"
 }
 
-/// Header and rows for a terminal, with fewer columns than the page has; the last cell of a row that somebody has to
-/// look after is in capitals.
+/// Returns header and rows for a terminal, with fewer columns than the page. The last cell of a row that
+/// needs attention is in capitals.
 #[must_use]
 pub fn text_cells(table: &RunTable) -> (Vec<String>, Vec<Vec<String>>) {
     let short = |key: &String| key.rsplit('.').next().unwrap_or(key).to_owned();

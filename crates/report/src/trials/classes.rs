@@ -1,4 +1,4 @@
-//! Scores by effect and by class where several effects act.
+//! Scores by effect and by class for cases with several effects.
 
 use results::{ClassScores, InclusionRow, Proportion, TrialsResult};
 
@@ -6,10 +6,10 @@ use super::grid::{Grid, GridCell, GridRow, Section};
 use super::grids::{plain, share};
 use crate::format::fixed;
 
-/// A score of one group.
+/// Score of one group.
 type Score = Box<dyn Fn(&ClassScores) -> Proportion>;
 
-/// Scores by class, a row each with its name: one share a group of cases.
+/// Returns the scores by class: for each score its name and one share for each group of cases.
 #[must_use]
 pub fn class_rows(groups: &[ClassScores]) -> Vec<(String, Vec<Proportion>)> {
     let mut scores: Vec<(String, Score)> = vec![
@@ -33,7 +33,7 @@ pub fn class_rows(groups: &[ClassScores]) -> Vec<(String, Vec<Proportion>)> {
     scores.into_iter().map(|(name, score)| (name, groups.iter().map(score).collect())).collect()
 }
 
-/// The section, where such cases were made.
+/// Returns the section, if there are such cases.
 pub(super) fn section(result: &TrialsResult) -> Option<Section> {
     let groups = &result.inclusion;
     if groups.is_empty() {

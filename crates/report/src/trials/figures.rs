@@ -1,4 +1,4 @@
-//! The plots of the page on trials.
+//! Plots of the page of trials.
 
 use results::{Reliability, ReliabilityBin, TrialsResult};
 
@@ -14,7 +14,7 @@ fn diagonal(label: &str) -> Series {
     }
 }
 
-/// Stated against found, of confidence on each group of banks.
+/// Plots observed shares against stated probabilities, for each kind of probability and group of banks.
 pub(super) fn reliability(result: &TrialsResult) -> Option<Figure> {
     let shown: Vec<&Reliability> =
         result.reliability.iter().filter(|study| study.subject != "confidence, not mapped").collect();
@@ -57,7 +57,7 @@ pub(super) fn reliability(result: &TrialsResult) -> Option<Figure> {
     figure("reliability", "Reliability", explanation, &plot, table)
 }
 
-/// Hits against false alarms of `unknown`.
+/// Plots hits against false alarms of `unknown`.
 pub(super) fn unknown(result: &TrialsResult) -> Option<Figure> {
     let curve = &result.unknown.curve;
     if curve.is_empty() {

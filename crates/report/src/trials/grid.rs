@@ -1,4 +1,4 @@
-//! Sections, tables and percentages of the page on trials.
+//! Sections, tables and percentages of the page of trials.
 
 use crate::figures::Figure;
 use crate::format::{fixed, quantity};
@@ -12,7 +12,7 @@ pub(super) struct Section {
     pub(super) figures: Vec<Figure>,
 }
 
-/// A table whose cells may be shaded by what they hold.
+/// A table whose cells may be shaded by their values.
 pub(super) struct Grid {
     pub(super) title: String,
     pub(super) corner: &'static str,
@@ -25,7 +25,7 @@ pub(super) struct GridRow {
     pub(super) cells: Vec<GridCell>,
 }
 
-/// A cell: a number, what stands small below it, and how deep it is shaded, in percent.
+/// A cell: a number, a small text below it, and the depth of its shading in percent.
 #[derive(Default)]
 pub(super) struct GridCell {
     pub(super) text: String,
@@ -33,12 +33,12 @@ pub(super) struct GridCell {
     pub(super) shade: Option<String>,
 }
 
-/// A share in percent.
+/// Formats a share in percent.
 pub(super) fn percent(share: f64) -> String {
     if share.is_finite() { quantity(&fixed(100.0 * share, 1), "%") } else { "–".to_owned() }
 }
 
-/// An interval of shares in percent, without its unit.
+/// Formats an interval of shares in percent, without the unit.
 pub(super) fn percents(ends: [f64; 2]) -> String {
     let [low, high] = ends.map(|end| fixed(100.0 * end, 1));
     format!("[{low}, {high}]")

@@ -1,14 +1,14 @@
-//! The tables of the page on trials.
+//! Tables of the page of trials.
 
 use results::{Confusion, Proportion, SizeRow, TrialsResult};
 
 use super::grid::{Grid, GridCell, GridRow, Section, percent, percents};
 use crate::format::{count, fixed, interval, quantity, significant};
 
-/// Shading of a cell with everything in it, in percent: text stays readable on it.
+/// Shading, in percent, of a cell that holds all cases; text stays readable on it.
 const DEEPEST: f64 = 45.0;
 
-/// A share with its count and interval; empty where there is nothing to count.
+/// Returns a share with its count and interval; `–` if there are no cases.
 pub(super) fn share(of: &Proportion) -> GridCell {
     if of.of == 0 {
         return GridCell { text: "–".to_owned(), ..GridCell::default() };
@@ -24,12 +24,12 @@ pub(super) fn plain(text: impl Into<String>) -> GridCell {
     GridCell { text: text.into(), ..GridCell::default() }
 }
 
-/// A size in noise units as it heads a column.
+/// Formats a size in noise units as the title of a column.
 pub(super) fn size(value: f64) -> String {
     format!("about {}", fixed(value, 0))
 }
 
-/// Rows by name, columns by size.
+/// Returns a table with rows by name and columns by size.
 fn by_size(
     rows: &[&SizeRow],
     name: impl Fn(&SizeRow) -> String,
@@ -63,7 +63,7 @@ fn by_size(
     }
 }
 
-/// Every bank's shares of right answers, by what counts as right.
+/// Returns each bank's shares of right answers, by the definition of right.
 fn by_bank(result: &TrialsResult) -> Grid {
     Grid {
         title: "By kind of case".to_owned(),
@@ -184,7 +184,7 @@ pub(super) fn confusion(result: &TrialsResult) -> Section {
     }
 }
 
-/// How the right answers' errors and all answers' times are distributed.
+/// Returns the distributions of the right answers' errors and of all answers' times.
 fn distributions(result: &TrialsResult) -> Grid {
     let number = |value: f64, unit: &str| {
         plain(if value.is_finite() { quantity(&significant(value, 3), unit) } else { "–".to_owned() })

@@ -1,4 +1,4 @@
-//! The page on trials whose effect was withheld.
+//! Page of withheld-effect trials.
 
 mod classes;
 mod figures;
@@ -19,7 +19,7 @@ use crate::frame::{Frame, finish};
 use crate::verdict::{Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts, remarks};
 
-/// Failures shown; `cases.csv` has all.
+/// Largest number of failures shown; `cases.csv` has all.
 const MOST_FAILURES: usize = 300;
 
 #[derive(Template)]
@@ -167,7 +167,7 @@ fn headline(result: &TrialsResult) -> Verdict {
     }
 }
 
-/// A look at a case that went wrong.
+/// Returns the next step: a look at a case that was answered wrongly.
 fn next(result: &TrialsResult) -> Vec<String> {
     let first = result.failures.first();
     first

@@ -1,4 +1,4 @@
-//! Probabilities held against what was so.
+//! Comparison of stated probabilities with observed shares.
 
 use results::{Reliability, TrialsResult};
 

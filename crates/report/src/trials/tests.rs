@@ -1,4 +1,4 @@
-//! Of the page on trials.
+//! Tests of the page of trials.
 
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ fn bar(metric: &str, state: &str, beyond: bool, value: Value) -> Value {
             "interval_95": [0.5, 0.99], "cases": 10, "state": state, "missed_beyond_chance": beyond })
 }
 
-/// Trials as they might have been: small.
+/// Returns small made-up trials.
 fn small() -> Value {
     let nothing = json!({ "count": 0, "of": 0, "share": null, "interval_95": [0.0, 1.0] });
     let size = |effect: &str, size: f64, right: u64| {

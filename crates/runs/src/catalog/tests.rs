@@ -5,7 +5,7 @@ use results::{RunState, SWEEP_SCHEMA, SweepEnd, SweepState};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// A run folder with these files.
+/// Creates a run folder that contains these files.
 fn run(root: &Path, name: &str, files: &[(&str, &str)]) -> RunFolder {
     let folder = RunFolder::create_at(&root.join(name)).unwrap();
     for (file, text) in files {
@@ -82,7 +82,7 @@ fn a_folder_that_cannot_be_listed_is_an_error_with_its_name() {
 
 const CONFIG: (&str, &str) = ("config.toml", "task = \"estimate\"\n[estimator]\nname = \"pinn\"\n");
 
-/// What every result has in common, every number another one.
+/// Fields that all results share, each number with a different value.
 fn shared(task: &str) -> Value {
     json!({
         "schema": "ringdown.result/1", "task": task, "seed": 3, "error_percent": 0.31, "worst_error_percent": 0.32,
@@ -109,7 +109,7 @@ fn with(mut result: Value, more: Value) -> Value {
     result
 }
 
-/// An estimation that ended as the first word says, its one other seed as the second.
+/// Estimation result that ended in state `reached`, with one other seed that ended in state `other`.
 fn estimation(reached: &str, other: &str) -> Value {
     let seed = json!({
         "seed": 4, "decay_rate": 0.51, "zeta": 0.52, "error_percent": 0.53, "reached": other, "steps": 54, "seconds": 0.55
@@ -153,7 +153,8 @@ fn kept(root: &Path, result: &Value) -> KeptRun {
     read_run(run(root, &name, &[CONFIG, ("result.json", &result.to_string())]).path())
 }
 
-/// That a row holds, under each name, the value at that place of the result, and nothing under any other name.
+/// Asserts that each named field of a row equals the value at its place in the result, and that every other
+/// field is empty.
 fn holds(run: &KeptRun, row: usize, result: &Value, places: &[(&str, &str)]) {
     let row = serde_json::to_value(&run.rows[row]).unwrap();
     for (name, found) in row.as_object().unwrap() {
@@ -200,7 +201,7 @@ fn a_row_of_an_estimation_says_what_its_result_says() {
     );
 }
 
-/// JSON has no word for the error relative to an oracle that says zero.
+/// JSON has no number for the error relative to an oracle estimate of zero, so that error is `null`.
 #[test]
 fn null_is_no_number_and_not_absent() {
     let root = tempfile::tempdir().unwrap();
@@ -299,7 +300,7 @@ fn without_a_result_the_last_event_says_why() {
         let found = read_run(folder.path());
         assert_eq!(found.state, state);
         assert!(found.reason.contains(says), "{found:?}");
-        // One row, which says of the run what is known without a result.
+        // One row, with the fields that are known without a result.
         let [row] = &found.rows[..] else { panic!("{:?}", found.rows) };
         assert_eq!((row.task.as_str(), row.estimator.as_str()), ("estimate", "pinn"));
         assert_eq!(
@@ -318,7 +319,7 @@ fn when_it_began_is_told_to_the_second() {
     assert_eq!(read_run(&root.path().join("absent")).began(), "");
 }
 
-/// A sweep of four runs that ended so; `None` did not end.
+/// Sweep of four runs that ended in these states; `None` for a run that has not ended.
 fn swept(path: &Path, ends: [Option<SweepState>; 4]) -> KeptRun {
     let digest = |at: usize| format!("sha256:{at:064}");
     let line = |at: usize| {

@@ -61,7 +61,8 @@ fn events_are_lines() {
     assert_eq!(log.last("two").unwrap().details, "a\nb");
 }
 
-/// Every operation of a write fails in turn: the old content stays, or the new one is there whole.
+/// Each operation of a write fails in turn: afterwards the file has either its old content or all of its new
+/// content.
 #[test]
 fn a_write_that_fails_anywhere_leaves_the_old_file_or_the_new_one() {
     for refusal in [Refusal::Device, Refusal::Full] {
@@ -114,7 +115,7 @@ fn what_a_killed_program_was_writing_is_taken_away_and_nothing_else() {
     folder.remove("checkpoints/tmp").unwrap();
     folder.remove("checkpoints/tmp").unwrap();
     assert_eq!(folder.checkpoints().unwrap(), ["pinn-0.state"]);
-    // What is there and cannot be read is not taken for absent.
+    // A checkpoint that exists and cannot be read is not treated as missing.
     std::fs::create_dir(folder.checkpoint_path("a folder")).unwrap();
     assert!(matches!(folder.read_checkpoint("a folder"), Err(RunError::Io { .. })));
     folder.remove_checkpoints().unwrap();
@@ -144,7 +145,7 @@ fn what_a_folder_holds_besides_its_lock_is_told() {
     assert!(!folder.holds_only(&["events.jsonl"]).unwrap());
 }
 
-/// Where runs go unless somebody says otherwise git does not look.
+/// Git ignores the default folder of runs.
 #[test]
 fn kept_runs_are_not_part_of_the_project() {
     let ignored = include_str!("../../../../.gitignore");
@@ -152,7 +153,7 @@ fn kept_runs_are_not_part_of_the_project() {
     assert!(ignored.lines().any(|line| line.trim_start_matches('/') == root.display().to_string()));
 }
 
-/// What a file is named in [`Texts`](crate::Texts), beside the file.
+/// Fields of [`Texts`](crate::Texts) and the files that they hold.
 const TEXTS: [(&str, &str); 8] = [
     ("config", "config.toml"),
     ("result", "result.json"),
@@ -207,7 +208,7 @@ fn a_report_is_made_of_the_folder_s_files_and_tables_may_be_absent() {
     for (name, text) in texts(&folder).into_iter().filter(|(name, _)| *name != "name") {
         assert!(TEXTS.contains(&(name, text.as_str())), "{name}: {text}");
     }
-    // A table that is there and cannot be read is not taken for absent.
+    // A table that exists and cannot be read is not treated as missing.
     std::fs::remove_file(folder.path().join("trace.csv")).unwrap();
     std::fs::create_dir(folder.path().join("trace.csv")).unwrap();
     assert!(folder.texts().unwrap_err().to_string().contains("trace.csv"));

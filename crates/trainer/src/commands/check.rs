@@ -1,4 +1,4 @@
-//! `trainer check`: a configuration and its data looked at, nothing run, nothing written.
+//! `trainer check`: validation of a configuration and its data, without running or writing anything.
 
 use crate::commands::learn::problem;
 use crate::configured::{ConfigArguments, Configured, read_document};
@@ -14,14 +14,14 @@ use simulator::Plan;
 use trials::TrialPlan;
 use workflow::learning::methods;
 
-/// What would run.
+/// Summary of the run that a configuration asks for.
 #[derive(Debug, Serialize)]
 struct Checked {
     config: String,
     task: &'static str,
     name: String,
     seed: u64,
-    /// What is to be done, as label and text.
+    /// Planned work, as labels and texts.
     plan: Vec<Line>,
     values: Values,
 }
@@ -32,7 +32,7 @@ struct Line {
     text: String,
 }
 
-/// Where the values in force come from.
+/// Number of values in force, by their source.
 #[derive(Debug, Default, Serialize)]
 struct Values {
     file: usize,
@@ -44,7 +44,7 @@ fn line(what: impl Into<String>, text: impl Into<String>) -> Line {
     Line { what: what.into(), text: text.into() }
 }
 
-/// Checks and says what would run.
+/// Checks a configuration and reports the run that it asks for.
 pub(crate) fn command(arguments: &ConfigArguments) -> Result<Outcome, TrainerError> {
     let document = read_document(&arguments.config, &arguments.overrides, arguments.seed)?;
     let configured = Configured::resolve(&document)?;
@@ -174,7 +174,7 @@ fn record(path: &str, samples: usize, origin: record::Origin, clock: &str) -> St
     format!("{path}: {samples} samples, {}, clock {clock}", origin.name())
 }
 
-/// Counts the values in force by where they come from; keys without a value count nowhere.
+/// Counts the values in force by their source; keys without a value are not counted.
 fn values(resolved: &Resolved) -> Values {
     let mut values = Values::default();
     for setting in resolved.settings().iter().filter(|setting| setting.value.is_some()) {

@@ -1,4 +1,4 @@
-//! `trainer explain`: the values in force, where they come from, and what they mean.
+//! `trainer explain`: the values in force, their sources and their meaning.
 
 use crate::configured::{Configured, read_document};
 use crate::error::TrainerError;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use settings::{Default, Origin, Setting};
 use std::path::Path;
 
-/// Explaining keys of a configuration.
+/// Arguments of explaining keys of a configuration.
 #[derive(Debug, Args)]
 #[command(override_usage = "trainer explain [OPTIONS] [KEY] <CONFIG> [KEY=VALUE]...")]
 pub(crate) struct ExplainArguments {
@@ -25,7 +25,8 @@ pub(crate) struct ExplainArguments {
 }
 
 impl ExplainArguments {
-    /// Key, configuration, overrides. The second word is the configuration where it is no override.
+    /// Splits the words into key, configuration and overrides. The second word is the configuration unless it
+    /// is an override.
     fn parts(&self) -> (Option<&str>, &Path, &[String]) {
         match self.words.as_slice() {
             [key, config, overrides @ ..] if !config.contains('=') => {
@@ -37,7 +38,7 @@ impl ExplainArguments {
     }
 }
 
-/// Explains one key, a table's keys, or all.
+/// Explains one key, the keys of a table, or all keys.
 pub(crate) fn command(arguments: &ExplainArguments) -> Result<Outcome, TrainerError> {
     let (key, path, overrides) = arguments.parts();
     let configured = Configured::resolve(&read_document(path, overrides, arguments.seed)?)?;
@@ -73,7 +74,7 @@ fn listing<'a>(
     Ok(Outcome::Done)
 }
 
-/// The value in force as TOML writes it.
+/// Formats the value in force as TOML.
 fn value(setting: &Setting) -> String {
     setting.value.as_ref().map_or_else(|| "(left open)".to_owned(), ToString::to_string)
 }

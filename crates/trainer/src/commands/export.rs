@@ -1,4 +1,4 @@
-//! `trainer export`: finished runs for the trackers of experiments that people have already.
+//! `trainer export`: finished runs for common experiment trackers.
 
 use crate::error::TrainerError;
 use crate::folders::resume::is_finished;
@@ -10,7 +10,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use tracking::{Finished, mlflow, tensorboard};
 
-/// Exporting runs.
+/// Arguments of exporting runs.
 #[derive(Debug, Args)]
 pub(crate) struct ExportArguments {
     /// Folders of finished runs
@@ -34,7 +34,7 @@ enum Tracker {
     Mlflow,
 }
 
-/// Writes what was asked for; doing so again writes the same again.
+/// Writes the files for the requested trackers; repeating the export writes the same files again.
 pub(crate) fn command(arguments: &ExportArguments) -> Result<Outcome, TrainerError> {
     let mut written = Vec::new();
     for path in &arguments.runs {
@@ -48,7 +48,7 @@ pub(crate) fn command(arguments: &ExportArguments) -> Result<Outcome, TrainerErr
                 }
                 Tracker::Mlflow => {
                     let store = RunFolder::open(&arguments.store);
-                    // MLflow asks for a place that holds whatever folder it is started in.
+                    // MLflow needs a path that is valid from whatever folder it is started in.
                     let place =
                         std::path::absolute(&arguments.store).unwrap_or_else(|_| arguments.store.clone());
                     for (name, content) in mlflow::files(&run, &place) {

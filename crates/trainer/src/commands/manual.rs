@@ -1,4 +1,5 @@
-//! `trainer completions` and `trainer man`: what clap makes from the command line's own description.
+//! `trainer completions` and `trainer man`: output that clap generates from the description of the command
+//! line.
 
 use crate::error::TrainerError;
 use crate::outcome::Outcome;

@@ -1,4 +1,4 @@
-//! The subcommands, one file or folder each; `run` is the one without a name.
+//! Subcommands, each in a file or folder of its own; `run` is the one without a name.
 
 pub(crate) mod check;
 pub(crate) mod cite;

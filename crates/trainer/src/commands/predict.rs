@@ -1,4 +1,4 @@
-//! `trainer predict`: a learned model run on a record it never saw.
+//! `trainer predict`: a learned model applied to a record that it never saw.
 
 use crate::commands::diagnose::arguments::Reading;
 use crate::error::{LearnCommandError, TrainerError};
@@ -18,7 +18,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use workflow::Loaded;
 
-/// A learned model on a record.
+/// Runs a learned model on a record.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -41,7 +41,7 @@ pub(crate) struct PredictArguments {
     pub(crate) output: Output,
 }
 
-/// What a model's file says of its training.
+/// Metadata on the training in a model's file.
 #[derive(Debug, Clone, Deserialize)]
 struct About {
     unit: String,

@@ -1,4 +1,4 @@
-//! `trainer schema`: what a configuration may hold, as JSON Schema for editors.
+//! `trainer schema`: JSON Schema of configurations, for editors.
 
 use crate::error::TrainerError;
 use crate::outcome::Outcome;
@@ -16,7 +16,7 @@ use settings::json_schema;
 use simulator::simulate_schema;
 use trials::trials_schema;
 
-/// What a file is for.
+/// Purpose of a configuration file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Purpose {
     /// One estimator on one record
@@ -35,7 +35,7 @@ pub(crate) enum Purpose {
     Nominal,
 }
 
-/// Those that a file names as its task.
+/// Purposes that a file names as its task.
 const TASKS: [Purpose; 6] = [
     Purpose::Estimate,
     Purpose::Compare,
@@ -72,8 +72,9 @@ impl Purpose {
     }
 }
 
-/// The oscillator at the top or in a table, the effects of a simulation with the key that holds them, and what else a
-/// configuration of a simulation has, so that a repaired simulator is a nominal one.
+/// Builds the schema of a nominal simulator: the oscillator at the top or in a table, the effects of a
+/// simulation with their key, and the other keys of a simulation's configuration, so that a repaired
+/// simulator is valid as a nominal one.
 fn nominal_schema() -> Value {
     let simulation = simulate_schema();
     let mut root = json_schema::tables(&[NOMINAL]);
@@ -109,7 +110,7 @@ fn nominal_schema() -> Value {
     root
 }
 
-/// Prints the schema of one task, or that of all, which looks at the file's `task`.
+/// Prints the schema of one task, or that of all tasks, which depends on the file's `task`.
 pub(crate) fn command(purpose: Option<Purpose>) -> Result<Outcome, TrainerError> {
     let (title, schema) = match purpose {
         Some(purpose) => (format!("Ringdown: {}", purpose.name()), purpose.schema()),
@@ -127,8 +128,8 @@ pub(crate) fn command(purpose: Option<Purpose>) -> Result<Outcome, TrainerError>
     Ok(Outcome::Done)
 }
 
-/// Each task's schema where a file names it; without a name, a file is an estimation, unless one below says
-/// otherwise.
+/// Combines the schemas of all tasks by the `task` that a file names. A file without a task or a base is an
+/// estimation.
 fn of_all_tasks() -> Value {
     let names: Vec<&str> = TASKS.iter().map(|task| task.name()).collect();
     let definitions: serde_json::Map<String, Value> =

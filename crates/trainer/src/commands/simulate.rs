@@ -1,4 +1,4 @@
-//! `trainer simulate`: records of systems drawn from priors, their truths sealed apart from them.
+//! `trainer simulate`: records of systems drawn from priors, with their truths sealed separately.
 
 use crate::configured::{check_task, read_config};
 use crate::error::TrainerError;
@@ -18,7 +18,7 @@ use simulator::{GenerationError, Plan, csv_text, generate, nominal_text};
 use std::time::Instant;
 use truth::{Sealed, Truth, digest};
 
-/// Folders below the run's: whoever is given the first has no way to the second.
+/// Subfolders of the run's folder, separate so that the records can be passed on without the truths.
 const RECORDS_FOLDER: &str = "records";
 const TRUTH_FOLDER: &str = "truth";
 
@@ -30,13 +30,13 @@ pub(crate) fn command(arguments: &ExperimentArguments) -> Result<Outcome, Traine
     simulate(arguments, &Plan::resolve(&document)?, cancel)
 }
 
-/// A record that was written.
+/// Record that was written.
 struct Written {
     line: ManifestLine,
     samples: u64,
     /// Ids of the effects of its system.
     effects: Vec<&'static str>,
-    /// Whether it is the first of its system.
+    /// `true` if it is the first record of its system.
     first: bool,
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn simulate(
         let file = file.clone();
         move |source| TrainerError::Generation { file, system, record, source }
     };
-    // What is wrong with the first record is wrong with most: better to know before there is a folder.
+    // A fault of the first record is a fault of most: it is found before the folder is created.
     plan.record(0, 0).map_err(failure(0, 0))?;
 
     let pool = arguments.thread_pool()?;
@@ -63,7 +63,7 @@ pub(crate) fn simulate(
         data: Vec::new(),
         threads: pool.current_num_threads(),
     };
-    // What was made before is made again: a seed gives the same records.
+    // Records that were made before are made again: a seed gives the same records.
     let folder = match begin(arguments, &beginning)? {
         Begun::Open(folder) => folder,
         Begun::Finished(outcome) => return Ok(outcome),
@@ -100,7 +100,7 @@ pub(crate) fn simulate(
     Ok(Outcome::of(!result.complete, true))
 }
 
-/// Simulates one record and writes it, its truth and, with the first of a system, what is believed of it.
+/// Simulates one record and writes it with its truth and, for the first of a system, the nominal simulator.
 fn write(
     plan: &Plan,
     folder: &RunFolder,
@@ -116,7 +116,7 @@ fn write(
         Ok((text, made.len(), Sealed::seal(truth)?, effects(truth), nominal_text(&drawn.nominal)))
     };
     let (text, samples, sealed, effects, nominal) = made().map_err(failure)?;
-    // One system needs no folder of its own.
+    // A single system needs no folder of its own.
     let place = if plan.systems == 1 { String::new() } else { format!("system-{system:03}/") };
     let line = ManifestLine {
         record: format!("{RECORDS_FOLDER}/{place}record-{record:03}.csv"),
@@ -132,7 +132,7 @@ fn write(
     Ok(Written { line, samples: samples as u64, effects, first: record == 0 })
 }
 
-/// The effects that generated a record, in the system and in the chain.
+/// Returns the ids of the effects that generated a record, in the system and in the chain.
 fn effects(truth: &Truth) -> Vec<&'static str> {
     truth.system.effects().iter().chain(truth.chain.effects()).map(|active| active.id()).collect()
 }
@@ -165,7 +165,7 @@ fn result(plan: &Plan, count: usize, written: &[Written], seconds: f64) -> Simul
     }
 }
 
-/// One screen.
+/// Formats the result for the terminal, on one screen.
 fn summary(plan: &Plan, result: &SimulationResult, folder: &RunFolder) -> String {
     let sampling = plan.sampling();
     let noun = |count: u64, one: &str| if count == 1 { one.to_owned() } else { format!("{one}s") };

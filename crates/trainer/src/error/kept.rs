@@ -1,8 +1,8 @@
-//! What an answer that is kept already can fail of.
+//! Errors of answers that are already stored.
 
 use thiserror::Error;
 
-/// Why an answer that is there is not the one that was asked for.
+/// Reason why an existing answer is not the one that was asked for.
 #[derive(Debug, Error)]
 pub(crate) enum KeptError {
     #[error(

@@ -1,8 +1,8 @@
-//! Why shares were not handed to a batch system.
+//! Errors of submitting shares to a batch system.
 
 use thiserror::Error;
 
-/// Why shares were not handed to a batch system.
+/// Reason why shares were not submitted to a batch system.
 #[derive(Debug, Error)]
 pub(crate) enum LaunchError {
     #[error(

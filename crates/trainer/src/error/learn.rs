@@ -1,9 +1,9 @@
-//! Why a learning study or a learned model gave no result.
+//! Errors of learning studies and learned models.
 
 use ::learn::LearnError;
 use thiserror::Error;
 
-/// What is wrong, and where.
+/// Fault in a learning study or a learned model, with its place.
 #[derive(Debug, Error)]
 pub(crate) enum LearnCommandError {
     #[error("problem.{problem}: {source}")]

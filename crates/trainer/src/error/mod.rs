@@ -1,4 +1,4 @@
-//! What a command can fail of, and the exit code that belongs to it.
+//! Errors of commands, and their exit codes.
 
 mod kept;
 mod launch;
@@ -31,10 +31,10 @@ pub(crate) use sweep::SweepCommandError;
 pub(crate) use table::TableError;
 pub(crate) use trials::TrialsError;
 
-/// Why a command gave no result.
+/// Reason why a command gave no result.
 #[derive(Debug, Error)]
 pub(crate) enum TrainerError {
-    /// Neither a configuration nor a command.
+    /// Neither a configuration nor a command was named.
     #[error("name a configuration, for example configs/pinn.toml, or a command; --help shows both")]
     NoConfig,
     /// The configuration file could not be read.
@@ -49,12 +49,12 @@ pub(crate) enum TrainerError {
     OtherTask { origin: Origin, file: String, task: String, wanted: &'static str, example: &'static str },
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// A record that is not there, and of which the configuration says where it can be had.
+    /// The record is missing, and the configuration states where it can be obtained.
     #[error(
         "{error}. It does not come with this project: get it from {source_of}, and name it with data.path=FILE"
     )]
     AbsentRecord { error: RecordError, source_of: String },
-    /// A file that states the truth of another record than the one that it lies beside.
+    /// The truth file belongs to another record than the one beside it.
     #[error(
         "{file} states the truth of a record {stated}, but {record} is {found}; remove it, or state the truth of this record"
     )]
@@ -127,7 +127,7 @@ pub(crate) enum TrainerError {
     Report(#[from] ReportError),
     #[error("{folder}: is not a finished run: {problem}; expected a run's folder, as below reports/runs")]
     NoRun { folder: String, problem: String },
-    /// The result was printed to a place that took it not.
+    /// The result could not be written to standard output.
     #[error("the result cannot be written to standard output: {problem}")]
     Unprinted { problem: String },
     /// Threads or signal handlers could not be set up.
@@ -142,7 +142,7 @@ impl From<runs::SweepFolderError> for TrainerError {
 }
 
 impl TrainerError {
-    /// 2 for wrong input or usage, 1 for a failure that is not the user's.
+    /// Returns the exit code: 2 for wrong input or usage, 1 for a failure that is not the user's.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Self::NoConfig

@@ -1,8 +1,8 @@
-//! Reasons why no skeleton was written.
+//! Errors of `trainer new`.
 
 use thiserror::Error;
 
-/// A fault, and its remedy.
+/// Reason why no skeleton was written, with its remedy.
 #[derive(Debug, Error)]
 pub(crate) enum NewError {
     #[error(

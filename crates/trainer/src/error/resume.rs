@@ -1,8 +1,8 @@
-//! Why a run cannot be resumed or verified.
+//! Errors of resuming and verifying runs.
 
 use thiserror::Error;
 
-/// Why a run cannot be resumed or verified.
+/// Reason why a run cannot be resumed or verified.
 #[derive(Debug, Error)]
 pub(crate) enum ResumeError {
     #[error(

@@ -1,11 +1,11 @@
-//! What a sweep can fail of as a whole; what a run fails of is its row.
+//! Errors of a sweep as a whole; errors of single runs are recorded in their rows.
 
 use experiment::sweep::SweepError;
 use record::RecordError;
 use runs::SweepFolderError;
 use thiserror::Error;
 
-/// Why there is no sweep.
+/// Reason why a sweep cannot be made.
 #[derive(Debug, Error)]
 pub(crate) enum SweepCommandError {
     #[error(transparent)]

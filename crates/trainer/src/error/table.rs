@@ -1,8 +1,8 @@
-//! What putting runs side by side can fail of.
+//! Errors of comparing runs in a table.
 
 use thiserror::Error;
 
-/// Why there is no table.
+/// Reason why there is no table.
 #[derive(Debug, Error)]
 pub(crate) enum TableError {
     #[error("{path}: there is no such folder; name run folders, sweep folders, or a quoted pattern")]

@@ -1,10 +1,10 @@
-//! What trials can fail of.
+//! Errors of trials.
 
 use thiserror::Error;
 use trials::TrialError;
 use truth::SealError;
 
-/// Why trials gave no score.
+/// Reason why trials gave no score.
 #[derive(Debug, Error)]
 pub(crate) enum TrialsError {
     #[error(

@@ -1,16 +1,17 @@
-//! Whether pipelines and clocks agree on a record, in one sentence.
+//! Agreement of pipelines and clocks on a record, in one sentence.
 
 use report::format;
 use results::{DataSummary, PipelineOutcome, PipelineRow};
 
-/// Distance between two answers, in standard errors of their difference, that is no chance.
+/// Distance between two answers above which they disagree, in standard errors of their difference.
 const PLAIN: f64 = 3.0;
 
-/// Distance between two angular frequencies that no peak's scatter makes, as a share: the median of periods does not average,
-/// and on a grid of 2 ms a period of 0.3 s is known to 0.35 %.
+/// Relative distance between two angular frequencies above which they disagree. It exceeds the scatter of
+/// peaks: the median of periods does not average, and on a grid of 2 ms a period of 0.3 s is known to 0.35 %.
 const FREQUENCY: f64 = 0.01;
 
-/// The sentence that goes before any other where another way through the record gives another answer; `None` where all agree.
+/// Returns a warning if another pipeline or clock gives a different answer; `None` if all agree. It is shown
+/// before any other sentence.
 pub(crate) fn disagreement(rows: &[PipelineRow], data: &DataSummary) -> Option<String> {
     let fits: Vec<(&PipelineRow, [f64; 3])> = rows
         .iter()
@@ -54,7 +55,7 @@ fn name(row: &PipelineRow) -> String {
     format!("the {} pipeline on the {} clock", row.pipeline, row.clock)
 }
 
-/// Which answer to believe, and why.
+/// Recommends the answer to believe, with the reason.
 fn belief(own: &PipelineRow, data: &DataSummary) -> String {
     let why = format!(
         "it takes the samples as they are, on the clock that the record speaks for ({}); the paper's interpolates \

@@ -1,14 +1,14 @@
-//! What is commonly read off a comparison and does not follow from it.
+//! Common conclusions from a comparison that do not follow from it.
 
 use crate::fits::input::Input;
 use oracle::curvature;
 use report::format;
 use results::{Caution, Derived, EnvelopeSummary, PipelineOutcome, PipelineRow};
 
-/// A bend or a correlation larger than chance would make it, in standard errors.
+/// Size of a bend or a correlation that counts as larger than chance, in standard errors.
 const PLAIN: f64 = 3.0;
 
-/// The statements that these numbers do not bear out, each with the numbers that speak against it.
+/// Returns the statements that these numbers do not support, each with the numbers that contradict it.
 pub(crate) fn cautions(
     input: &Input,
     summary: &EnvelopeSummary,
@@ -39,7 +39,7 @@ fn quality_is_not_cycles(derived: &Derived) -> Caution {
     }
 }
 
-/// Only where the peaks span less than nine tenths of the record.
+/// Returns a caution if the peaks span less than nine tenths of the record.
 fn peaks_do_not_fill_the_record(input: &Input, summary: &EnvelopeSummary) -> Option<Caution> {
     let times = &input.clock.times_s;
     let duration = times.last()? - times.first()?;
@@ -57,7 +57,7 @@ fn peaks_do_not_fill_the_record(input: &Input, summary: &EnvelopeSummary) -> Opt
     })
 }
 
-/// Only where the pipeline interpolates.
+/// Returns a caution if the pipeline interpolates.
 fn grid_is_not_sampling(input: &Input, summary: &EnvelopeSummary) -> Option<Caution> {
     let samples = input.record.len();
     (summary.samples != samples).then(|| Caution {
@@ -71,8 +71,8 @@ fn grid_is_not_sampling(input: &Input, summary: &EnvelopeSummary) -> Option<Caut
     })
 }
 
-/// Only where ln A bends by more than three standard errors or its residuals are correlated, and they are large enough
-/// to matter.
+/// Returns a caution if ln A bends by more than three standard errors or its residuals are correlated, and
+/// the effect is large enough to matter.
 fn fit_quality_is_not_viscosity(input: &Input) -> Option<Caution> {
     let bend = curvature(&input.extraction.envelope).ok()?;
     let sizes = bend.coefficient.abs() / bend.std_error;
@@ -93,7 +93,7 @@ fn fit_quality_is_not_viscosity(input: &Input) -> Option<Caution> {
     })
 }
 
-/// Only where another pipeline or clock moves ζ by more than the methods differ.
+/// Returns a caution if another pipeline or clock changes ζ by more than the differences between the methods.
 fn agreement_is_not_truth(
     input: &Input,
     max_error_percent: f64,

@@ -1,4 +1,4 @@
-//! The record of an experiment on its way to an envelope and the oracle's answer.
+//! Input of an experiment's fits: from the record to an envelope and the oracle's answer.
 
 use crate::error::TrainerError;
 use envelope::Extraction;
@@ -9,18 +9,18 @@ use record::{Clock, ClockChoice, Record, RecordError, Source, read_file};
 use results::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
 use std::path::Path;
 
-/// The record, its clock and its envelope, with the oracle's answer.
+/// Record with its clock, its envelope and the oracle's answer.
 pub(crate) struct Input {
     pub(crate) record: Record,
     pub(crate) source: Source,
     pub(crate) clock: Clock,
-    /// The clock that the stamps and the values support.
+    /// Clock that the time stamps and the values support.
     pub(crate) believed: Clock,
     pub(crate) extraction: Extraction,
     pub(crate) oracle: DecayFit,
-    /// The same record through each pipeline and each clock that makes a difference; that in force first; none before
-    /// [`Self::with_pipelines`]. That comes before any fit: of a long record it takes seconds, which nobody
-    /// who stops a fit should wait for.
+    /// Results of the same record with each pipeline and each clock that makes a difference; the combination
+    /// in force comes first. Empty before [`Self::with_pipelines`]. That is called before any fit: for a long
+    /// record it takes seconds, for which nobody who stops a fit should have to wait.
     pub(crate) pipelines: Vec<PipelineRow>,
 }
 
@@ -41,7 +41,7 @@ impl Input {
         Ok(Self { record, source, clock, believed, extraction, oracle, pipelines: Vec::new() })
     }
 
-    /// The same, put through the other pipelines as well.
+    /// Adds the results of the other pipelines and clocks.
     pub(crate) fn with_pipelines(self, experiment: &Experiment) -> Self {
         Self { pipelines: self.all_pipelines(experiment), ..self }
     }
@@ -112,7 +112,7 @@ impl Input {
         }
     }
 
-    /// What a method states of its error, which takes the scatter of ln A to be even, for the scatter of this record.
+    /// Scales a method's stated error, which assumes even scatter of ln A, to the scatter of this record.
     pub(crate) fn scaled(&self, stated: Option<Uncertainty>, decay_rate: f64) -> Option<Uncertainty> {
         let factor = self.oracle.scatter_factor;
         stated.map(|known| Uncertainty {
@@ -121,7 +121,7 @@ impl Input {
         })
     }
 
-    /// The rows of `envelope.csv`, `fitted` being an estimator's function at the peaks.
+    /// Returns the rows of `envelope.csv`; `fitted` holds an estimator's function at the peaks.
     pub(crate) fn envelope_rows(&self, fitted: &[f64]) -> Vec<EnvelopeRow> {
         let envelope = &self.extraction.envelope;
         envelope
@@ -139,7 +139,7 @@ impl Input {
     }
 }
 
-/// What a pipeline came to under a clock; the row in force.
+/// Builds the row of a pipeline under a clock, marked as in force.
 fn row((pipeline, clock): (&str, &str), outcome: Result<PipelineOutcome, String>) -> PipelineRow {
     PipelineRow {
         pipeline: pipeline.to_owned(),
@@ -160,7 +160,8 @@ fn fit(extraction: &Extraction, oracle: &DecayFit) -> PipelineOutcome {
     }
 }
 
-/// A record's fault; where the file is absent, with the place that the configuration names for it.
+/// Converts a record's error; if the file is missing, the error includes the source that the configuration
+/// names.
 fn absent(error: RecordError, data: &DataSettings) -> TrainerError {
     match &data.source {
         Some(source) if !Path::new(&data.path).exists() => {

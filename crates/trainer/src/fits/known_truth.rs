@@ -1,6 +1,6 @@
-//! The truth of a simulated record, where a file beside it states one: `NAME.truth.toml` for `NAME.csv`.
+//! Known truth of a simulated record, if a file beside it states one: `NAME.truth.toml` for `NAME.csv`.
 //!
-//! Only the answer is held against it; no pipeline and no method sees it.
+//! It is only compared with the answer; no pipeline and no method sees it.
 
 use crate::configured::read_document;
 use crate::error::TrainerError;
@@ -19,7 +19,7 @@ const FIELD: Field =
     Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 const POSITIVE: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 
-/// The keys of the file.
+/// Keys of the file.
 const TRUTH: Section<'static> = Section {
     name: "",
     fields: &[
@@ -54,23 +54,23 @@ struct Keys {
     damping_ratio: Option<f64>,
 }
 
-/// A truth as far as it is stated.
+/// Truth, as far as it is stated.
 struct Known {
     omega_rad_s: Option<f64>,
     zeta: Option<f64>,
     meaning: String,
 }
 
-/// An answer beside the truth.
+/// Answer that is compared with the truth.
 pub(crate) struct Answer {
     pub(crate) zeta: f64,
     pub(crate) zeta_std_error: Option<f64>,
 }
 
-/// What the file beside a record states, beside an answer; `None` where there is no such file.
+/// Compares an answer with the truth in the file beside a record; `None` if there is no such file.
 ///
 /// # Errors
-/// A file that cannot be read or is about another record, and a simulation that cannot be made.
+/// A file that cannot be read or belongs to another record, or a simulation that fails.
 pub(crate) fn compare(input: &Input, answer: &Answer) -> Result<Option<TruthComparison>, TrainerError> {
     let path = beside(Path::new(&input.source.path));
     if !path.is_file() {
@@ -141,14 +141,14 @@ fn known(keys: Keys, input: &Input) -> Result<Known, TrainerError> {
     })
 }
 
-/// Damping ratio of the least-squares line through the turning points of a noise-free motion, over the stretch that the
-/// record's envelope covers.
+/// Computes the damping ratio of the least-squares line through the turning points of a noise-free motion,
+/// over the stretch covered by the record's envelope.
 fn equivalent(input: &Input, times: Vec<f64>, positions: Vec<f64>) -> Option<f64> {
     let record = Record::new(times, positions, None, Quantity::Position, input.record.unit()).ok()?;
     let clock = Clock::new(&record, ClockChoice::Host).ok()?;
     let pipeline = RecommendedPipeline::DEFAULT;
     let clean = pipeline.extract(&record, &clock).ok()?;
-    // Half of a half-cycle to either side: the same turning points and no others.
+    // Half of a half-cycle on each side: the same turning points and no others.
     let margin = clean.period_s / 4.0;
     let first = input.extraction.first_peak_s - margin;
     let last = first + input.extraction.envelope.times_s().last()? + 2.0 * margin;

@@ -1,4 +1,4 @@
-//! A method, classical or learned, behind one face.
+//! Methods, classical or learned, behind one interface.
 
 use crate::error::TrainerError;
 use envelope::Envelope;
@@ -15,16 +15,16 @@ use settings::{Document, Resolved, Section, SettingsError};
 use std::sync::Arc;
 use studies::StudiedMethod;
 
-/// A method that gives a decay rate.
+/// Method that estimates a decay rate.
 pub(crate) enum Method {
     Classical(&'static ClassicalRoute),
     Learned(Entry, Arc<dyn Estimator>),
 }
 
-/// What a fit is asked for besides the method, the envelope and the seed.
+/// Request to a fit, in addition to the method, the envelope and the seed.
 #[derive(Clone, Copy)]
 pub(crate) struct Request<'a> {
-    /// Times at which the fitted function is asked for, in seconds after the first peak.
+    /// Times at which the fitted function is evaluated, in seconds after the first peak.
     pub(crate) query_times: &'a [f64],
     /// Cap on the steps of an iterative method.
     pub(crate) max_steps: Option<u64>,
@@ -32,8 +32,8 @@ pub(crate) struct Request<'a> {
 }
 
 impl Method {
-    /// Every method there is, learned ones with their default settings: the paper's in its order, the
-    /// others after them.
+    /// Returns all methods, learned ones with their default settings: those of the paper in its order, then
+    /// the others.
     pub(crate) fn all() -> Result<Vec<Self>, SettingsError> {
         let mut methods: Vec<Self> = CLASSICAL.iter().map(Self::Classical).collect();
         for entry in ESTIMATORS {
@@ -45,7 +45,7 @@ impl Method {
         Ok(methods)
     }
 
-    /// The methods named, or all that there are.
+    /// Returns the named methods, or all of them.
     pub(crate) fn named(names: Option<&[String]>) -> Result<Vec<Self>, SettingsError> {
         let mut methods = Self::all()?;
         if let Some(names) = names {
@@ -54,7 +54,7 @@ impl Method {
         Ok(methods)
     }
 
-    /// The method of an experiment with one.
+    /// Returns the method of an experiment with a single one.
     pub(crate) fn of(single: &Single) -> Result<Self, TrainerError> {
         match single {
             Single::Learned { entry, estimator } => Ok(Self::Learned(*entry, Arc::clone(estimator))),
@@ -80,7 +80,7 @@ impl Method {
         }
     }
 
-    /// What it does, in a sentence.
+    /// Returns a one-sentence description of the method.
     pub(crate) fn summary(&self) -> &'static str {
         match self {
             Self::Classical(route) => route.summary,
@@ -95,7 +95,7 @@ impl Method {
         }
     }
 
-    /// Where it comes from.
+    /// Returns the family of the method: classical or learned.
     pub(crate) fn family(&self) -> Family {
         match self {
             Self::Classical(_) => Family::Classical,
@@ -103,12 +103,12 @@ impl Method {
         }
     }
 
-    /// The method as a study's tables name it.
+    /// Returns the method in the form used by a study's tables.
     pub(crate) fn studied(&self) -> StudiedMethod {
         StudiedMethod { number: self.number(), id: self.id(), title: self.title(), family: self.family() }
     }
 
-    /// Number in the paper's tables.
+    /// Returns the number in the paper's tables; `None` for a method outside the paper.
     pub(crate) fn number(&self) -> Option<u8> {
         match self {
             Self::Classical(route) => Some(route.paper_number),
@@ -116,7 +116,7 @@ impl Method {
         }
     }
 
-    /// Whether another seed takes another way.
+    /// Returns `true` if the result depends on the seed.
     pub(crate) fn draws(&self) -> bool {
         match self {
             Self::Classical(route) => route.draws,
@@ -124,7 +124,7 @@ impl Method {
         }
     }
 
-    /// Relation of its converged value to least squares.
+    /// Returns the relation of the method's converged value to least squares.
     pub(crate) fn estimand(&self) -> Estimand {
         match self {
             Self::Classical(_) => Estimand::LeastSquares,
@@ -132,7 +132,8 @@ impl Method {
         }
     }
 
-    /// Whether an error passes: a value that may differ from least squares is held to no distance from it.
+    /// Returns `true` if an error passes. A value that may differ from least squares passes at any finite
+    /// distance.
     pub(crate) fn passes(&self, error_percent: f64, tolerance_percent: f64) -> bool {
         match self.estimand() {
             Estimand::Own => error_percent.is_finite(),
@@ -140,12 +141,12 @@ impl Method {
         }
     }
 
-    /// Whether it has a learned part that can be taken away.
+    /// Returns `true` if the method has a learned part that can be removed.
     pub(crate) fn has_ablations(&self) -> bool {
         matches!(self, Self::Learned(entry, _) if entry.has(Tag::Ablation))
     }
 
-    /// As [`Self::pretrained`], told to nobody and kept nowhere.
+    /// Pretrains as [`Self::pretrained`] does, without progress output and checkpoints.
     pub(crate) fn pretrained_quietly(&self, seed: u64, request: &Request<'_>) -> Result<Self, TrainerError> {
         let (entry, estimator) = match self {
             Self::Classical(route) => return Ok(Self::Classical(route)),
@@ -158,7 +159,7 @@ impl Method {
         Ok(Self::Learned(*entry, trained.map_or_else(|| Arc::clone(estimator), Into::into)))
     }
 
-    /// λ in 1/s of a fit without a part of the method.
+    /// Fits without a part of the method and returns λ in 1/s.
     pub(crate) fn fit_without(
         &self,
         ablation: Ablation,
@@ -178,7 +179,7 @@ impl Method {
         if estimate.decay_rate.is_finite() { Ok(estimate.decay_rate) } else { Err(not_finite) }
     }
 
-    /// The same method with the part of its work done that no envelope enters.
+    /// Pretrains the method: does the part of its work that does not depend on an envelope.
     pub(crate) fn pretrained(
         self,
         seed: u64,
@@ -202,8 +203,7 @@ impl Method {
 
     /// Fits an envelope.
     ///
-    /// A classical method takes no steps that could be capped, watched or stopped: the longest takes
-    /// milliseconds.
+    /// A classical method has no steps to cap, watch or stop: the slowest takes milliseconds.
     pub(crate) fn fit(
         &self,
         envelope: &Envelope,
@@ -243,7 +243,7 @@ impl Method {
     }
 }
 
-/// A classical method's line as an estimate.
+/// Converts a classical method's line into an estimate.
 fn described(envelope: &Envelope, fit: ClassicalFit, query_times: &[f64]) -> Estimate {
     let times = envelope.times_s();
     let degrees = times.len() as f64 - 2.0;

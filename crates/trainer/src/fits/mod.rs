@@ -1,4 +1,4 @@
-//! From a record to fitted methods: what estimating, comparing and predicting share.
+//! From a record to fitted methods: the parts shared by estimating, comparing and predicting.
 
 pub(crate) mod ablations;
 pub(crate) mod agreement;

@@ -1,4 +1,4 @@
-//! Watches one fit: keeps its trace and, from time to time, its state, and moves the bar.
+//! Observer of one fit: records its trace, saves its state from time to time, and updates the progress bar.
 
 use crate::error::TrainerError;
 use crate::folders::resume::{Ledger, Resumed};
@@ -8,17 +8,18 @@ use results::TraceRow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A step that takes longer may be left in its middle (see [`crate::terminal::interrupt`]): so much work is worth a write.
+/// Duration of a step from which its result is worth a write. A longer step may be abandoned in its middle
+/// (see [`crate::terminal::interrupt`]).
 const LONG_STEP: Duration = Duration::from_millis(300);
 
-/// Where the state of a fit is kept, and under which name.
+/// Ledger and name under which the state of a fit is stored.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub(crate) ledger: &'a Ledger,
     pub(crate) name: &'a str,
 }
 
-/// A fit's own request to stop, made once its trace is so long.
+/// A fit's own request to stop, made once its trace has reached a given length.
 pub(crate) struct Pause {
     after: u64,
     cancel: Cancel,
@@ -40,31 +41,31 @@ impl Pause {
     }
 }
 
-/// Watches one fit.
+/// Observer of one fit.
 pub(crate) struct Watcher<'a> {
     progress: &'a Progress,
     place: Option<Place<'a>>,
     pause: Option<&'a Pause>,
     begun: Instant,
-    /// Time spent on the fit by programs before this one.
+    /// Time that earlier processes spent on the fit.
     earlier: Duration,
     seen: Mutex<Seen>,
 }
 
 struct Seen {
     trace: Vec<TraceRow>,
-    /// The state to go on from; taken once.
+    /// State to resume from; taken once.
     latest: Option<Vec<u8>>,
     kept_at: Instant,
-    /// When it was last asked whether the state should be kept: before every step.
+    /// Time of the last query whether a state is due to be stored; it is made before every step.
     asked_at: Instant,
     steps_since: u64,
-    /// Why a state could not be kept.
+    /// Reason why a state could not be stored.
     failure: Option<TrainerError>,
 }
 
 impl<'a> Watcher<'a> {
-    /// Watches a fit, with what an earlier program kept of it.
+    /// Creates the observer of a fit, starting from the state that an earlier process stored.
     pub(crate) fn new(
         progress: &'a Progress,
         place: Option<Place<'a>>,
@@ -94,7 +95,7 @@ impl<'a> Watcher<'a> {
         })
     }
 
-    /// Time spent on the fit, in seconds.
+    /// Returns the time spent on the fit, in seconds.
     pub(crate) fn seconds(&self) -> f64 {
         (self.earlier + self.begun.elapsed()).as_secs_f64()
     }
@@ -103,7 +104,7 @@ impl<'a> Watcher<'a> {
         self.seen.into_inner().unwrap_or_else(PoisonError::into_inner).trace
     }
 
-    /// Why a state could not be kept, where that is why the fit failed.
+    /// Returns the reason why a state could not be stored, if the fit failed because of it.
     pub(crate) fn failure(&self) -> Option<TrainerError> {
         self.seen().failure.take()
     }

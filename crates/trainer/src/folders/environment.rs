@@ -1,11 +1,11 @@
-//! What a run was made with: versions, machine, digests.
+//! Environment of a run: versions, machine, digests.
 
 use serde::Serialize;
 use serde_json::Value;
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// The content of `environment.json`.
+/// Content of `environment.json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Environment {
     version: &'static str,
@@ -31,7 +31,7 @@ struct Git {
 }
 
 const LOCK_FILE: &str = include_str!("../../../../Cargo.lock");
-/// Those whose arithmetic or random numbers a result depends on.
+/// Libraries on whose arithmetic or random numbers a result depends.
 const LIBRARIES: &[&str] = &[
     "burn",
     "linfa",
@@ -60,7 +60,8 @@ impl Environment {
     }
 }
 
-/// In what a run's `environment.json` differs from an environment, of what digits can depend on: a sentence for each.
+/// Lists the differences between a run's `environment.json` and the present environment that may change
+/// digits, one sentence for each.
 pub(crate) fn changes(begun: &[u8], now: &Environment) -> Vec<String> {
     let begun: Value = serde_json::from_slice(begun).unwrap_or_default();
     let now = serde_json::to_value(now).unwrap_or_default();
@@ -80,7 +81,7 @@ pub(crate) fn changes(begun: &[u8], now: &Environment) -> Vec<String> {
         .collect()
 }
 
-/// The libraries with their versions; worked out once.
+/// Returns the libraries with their versions; determined only once.
 fn libraries() -> Vec<Library> {
     static ANSWER: OnceLock<Vec<Library>> = OnceLock::new();
     let work_out = || {
@@ -91,8 +92,9 @@ fn libraries() -> Vec<Library> {
     ANSWER.get_or_init(work_out).clone()
 }
 
-/// The version of a package that the workspace itself depends on. Others may stand in the lock file as well, for the
-/// sake of some library: a workspace's package, which has no source, then says which one it means.
+/// Returns the version of a package that the workspace itself depends on. The lock file may contain other
+/// versions for the sake of some library; the entry of a workspace package, which has no source, then states
+/// the version meant.
 fn direct_version(lock: &toml::Table, name: &str) -> Option<String> {
     let packages = || lock.get("package").and_then(toml::Value::as_array).into_iter().flatten();
     let text = |package: &toml::Value, key: &str| package.get(key)?.as_str().map(str::to_owned);
@@ -110,8 +112,8 @@ fn direct_version(lock: &toml::Table, name: &str) -> Option<String> {
     }
 }
 
-/// The commit of the folder the program runs in. No answer where there is no git or no repository. Asked once: a sweep
-/// of a thousand short runs would wait for git longer than for the fits.
+/// Returns the commit of the folder in which the program runs; `None` without git or a repository. Determined
+/// only once: a sweep of a thousand short runs would wait for git longer than for the fits.
 fn git() -> Option<Git> {
     static ANSWER: OnceLock<Option<Git>> = OnceLock::new();
     ANSWER.get_or_init(ask_git).clone()
@@ -138,7 +140,8 @@ fn cpu_model() -> Option<String> {
 mod tests {
     use super::{LIBRARIES, direct_version, libraries};
 
-    /// Of the versions of one library in the lock file, that which the manifest of the workspace asks for.
+    /// Of several versions of a library in the lock file, the one that the workspace manifest asks for is
+    /// found.
     #[test]
     fn a_library_has_the_version_that_the_workspace_asks_for() {
         let manifest: toml::Table = toml::from_str(include_str!("../../../../Cargo.toml")).unwrap();

@@ -1,4 +1,4 @@
-//! The folders of runs: beginning and resuming one, its environment, its page.
+//! Folders of runs: beginning and resuming a run, its environment, its report.
 
 pub(crate) mod environment;
 pub(crate) mod page;

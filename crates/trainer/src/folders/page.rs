@@ -1,4 +1,4 @@
-//! The page and the tables of a run, made from its folder's other files.
+//! Report and tables of a run, derived from the other files of its folder.
 
 use crate::error::TrainerError;
 use report::{RunTexts, comparison_markdown, prediction_markdown, render};
@@ -6,7 +6,7 @@ use runs::RunFolder;
 use serde_json::Value;
 use std::path::Path;
 
-/// A place that holds no file of a run.
+/// Builds the error for a folder that holds no file of a run.
 pub(crate) fn no_run(run: &Path) -> TrainerError {
     let problem = "it holds none of its files, such as result.json".to_owned();
     TrainerError::NoRun { folder: run.display().to_string(), problem }
@@ -29,7 +29,7 @@ pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
     Ok(())
 }
 
-/// The tables that the folder's result makes, where its task has some.
+/// Returns the tables derived from the folder's result; `None` if its task has none.
 pub(crate) fn tables(folder: &RunFolder) -> Result<Option<String>, TrainerError> {
     let result = folder.texts()?.result;
     let task = serde_json::from_str::<Value>(&result).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! From runs to one table: which columns there are, and in which order the rows stand.
+//! Building of one table from runs: choice of columns and order of rows.
 
 use crate::error::TableError;
 use experiment::sweep::differing_keys;
@@ -7,22 +7,23 @@ use serde_json::Value;
 use settings::Document;
 use std::cmp::Ordering;
 
-/// A run on its way into a table.
+/// Run to be added to a table.
 pub(crate) struct Entry {
-    /// Its rows, without settings.
+    /// Rows of the run, without settings.
     pub(crate) rows: Vec<RunTableRow>,
-    /// Its configuration, where that is known.
+    /// Configuration of the run, if known.
     pub(crate) config: Option<Document>,
 }
 
-/// Columns that every table has, as `--sort` names them.
+/// Columns that every table has, with the names that `--sort` takes.
 const COLUMNS: [&str; 8] = ["run", "method", "zeta", "error", "worst", "steps", "seconds", "state"];
 
-/// Puts runs into one table. Its columns are what a sweep varies, and every other key in which the runs differ.
+/// Combines runs into one table. Its columns are the keys that a sweep varies, and every other key in which
+/// the runs differ.
 pub(crate) fn build(task: RunTableTask, name: &str, axes: Vec<SweepAxis>, entries: Vec<Entry>) -> RunTable {
     let configs: Vec<&Document> = entries.iter().filter_map(|entry| entry.config.as_ref()).collect();
     let varied = axes.iter().filter(|axis| axis.values.len() > 1).map(|axis| axis.key.clone());
-    // The estimator is a column of its own.
+    // The estimator has a column of its own.
     let mut columns: Vec<String> =
         varied.filter(|key| !["estimator", "estimator.name"].contains(&key.as_str())).collect();
     for key in differing_keys(&configs) {
@@ -49,7 +50,7 @@ pub(crate) fn build(task: RunTableTask, name: &str, axes: Vec<SweepAxis>, entrie
     RunTable::new(task, name, axes, columns, rows)
 }
 
-/// Sorts the rows by a column; rows without a value there come last, whichever the direction.
+/// Sorts the rows by a column; rows without a value there come last in either direction.
 pub(crate) fn sort(table: &mut RunTable, key: &str, reverse: bool) -> Result<(), TableError> {
     if !COLUMNS.contains(&key) && !table.columns.iter().any(|column| column == key) {
         let known: Vec<&str> = COLUMNS.into_iter().chain(table.columns.iter().map(String::as_str)).collect();
@@ -80,7 +81,7 @@ fn cell(row: &RunTableRow, key: &str) -> Option<Value> {
     }
 }
 
-/// Numbers by size, everything else by its text; numbers first.
+/// Compares numbers by size and other values by their text; numbers come first.
 fn compare(one: &Value, other: &Value) -> Ordering {
     match (one.as_f64(), other.as_f64()) {
         (Some(one), Some(other)) => one.total_cmp(&other),

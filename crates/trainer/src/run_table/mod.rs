@@ -1,4 +1,4 @@
-//! Runs as the rows of one table, of folders or of a sweep.
+//! Runs as the rows of one table, from folders or from a sweep.
 
 pub(crate) mod build;
 pub(crate) mod of_sweep;
@@ -9,13 +9,13 @@ use record::counted;
 use report::run_table_text;
 use results::RunTable;
 
-/// Rows that a terminal is shown; files and `--json` have all.
+/// Maximum number of rows shown on a terminal; files and `--json` have all of them.
 const MOST_LINES: usize = 100;
 
-/// Words that only rows have which somebody has to look after.
+/// Words that occur only in rows that need attention.
 pub(crate) const RED: [&str; 3] = ["FAIL", "CORRUPT", "corrupt"];
 
-/// Prints a table, the first rows of a long one.
+/// Prints a table; of a long one only the first rows.
 pub(crate) fn print_table(table: &RunTable) {
     let (header, mut rows) = run_table_text(table);
     let left_out = rows.len().saturating_sub(MOST_LINES);

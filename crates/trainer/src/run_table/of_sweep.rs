@@ -1,4 +1,4 @@
-//! The table of a sweep: what became of each run of the frozen list.
+//! Table of a sweep: the outcome of each run of the frozen list.
 
 use crate::commands::sweep::measure::{value_of, warning};
 use crate::error::{SweepCommandError, TrainerError};
@@ -10,10 +10,10 @@ use results::{
 use runs::{SweepFolder, read_run};
 use settings::Document;
 
-/// The table, in the order of the frozen list; runs are named from the sweep's folder.
+/// Builds the table in the order of the frozen list; runs are named relative to the sweep's folder.
 ///
 /// # Errors
-/// Where a result does not have what the search is for.
+/// A result lacks the measure of the search.
 pub(crate) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> Result<RunTable, SweepCommandError> {
     let entry = |line| entry(folder, manifest, line, &|run| run.to_owned());
     let entries = manifest.runs.iter().map(entry).collect();
@@ -56,10 +56,10 @@ pub(crate) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> Result<Ru
     Ok(table)
 }
 
-/// Name of the best trial's configuration.
+/// File name of the best trial's configuration.
 const BEST: &str = "best.toml";
 
-/// The configuration of the best trial, with a line that says what it is.
+/// Returns the configuration of the best trial, with a comment that describes it.
 pub(crate) fn best_config(
     folder: &SweepFolder,
     best: &SearchBest,
@@ -76,13 +76,13 @@ pub(crate) fn best_config(
     Ok(format!("{what}\n{text}"))
 }
 
-/// The runs of a sweep as entries of another table; runs are named from the current folder.
+/// Returns the runs of a sweep as entries of another table; runs are named relative to the current folder.
 pub(crate) fn entries(folder: &SweepFolder, manifest: &SweepManifest) -> Vec<Entry> {
     let place = |run: &str| folder.path().join(run).display().to_string();
     manifest.runs.iter().map(|line| entry(folder, manifest, line, &place)).collect()
 }
 
-/// What a row of this run is called: by its folder, or by what that would be called.
+/// Returns the name of a run in the table: its folder, or the name that its folder would have.
 pub(crate) fn run_name(manifest: &SweepManifest, line: &SweepLine) -> String {
     line.run.clone().unwrap_or_else(|| label(manifest, line))
 }
@@ -104,7 +104,7 @@ fn entry(
     for row in &mut rows {
         row.run.clone_from(&name);
         if line.state == SweepState::Done && row.state == RunState::Unfinished {
-            // The sweep saw its result; somebody has taken it away since.
+            // The sweep recorded a result, which has been removed since.
             (row.state, row.reason) = (RunState::Corrupt, "result.json is missing".to_owned());
         }
     }
@@ -112,7 +112,8 @@ fn entry(
     Entry { rows, config: Document::parse(&line.config, &text).ok() }
 }
 
-/// What a run's folder is called: its number and what is special about it. What all runs share is left out.
+/// Returns the name of a run's folder: its number and the values that distinguish it. Values that all runs
+/// share are left out.
 pub(crate) fn label(manifest: &SweepManifest, line: &SweepLine) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
     let mut label = format!("{:04}", line.number);

@@ -1,4 +1,4 @@
-//! A share of the work, and who runs the shares: what `sweep`, `trials` and `diagnose --batch` have in common.
+//! Shares of work and their launchers: the parts common to `sweep`, `trials` and `diagnose --batch`.
 
 mod script;
 mod slurm;
@@ -10,15 +10,15 @@ use script::SlurmOption;
 
 pub(crate) use slurm::{Work, launch};
 
-/// Shares and who runs them.
+/// Options for shares and their launcher.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Many machines")]
 pub(crate) struct ShareOptions {
     /// Works on the I-th of N shares only; all may run at once on one folder, and a repeated one does no harm
     #[arg(long, value_name = "I/N", requires = "out")]
     pub(crate) shard: Option<Shard>,
-    /// Exit code 0 once the share is worked through, whatever became of its runs or cases: for batch systems, where another
-    /// code means that the task has to be run again
+    /// Exit code 0 once the share is worked through, whatever the results of its runs or cases: for batch
+    /// systems, where another code means that the task has to be run again
     #[arg(long)]
     pub(crate) as_task: bool,
     /// Hands the shares to a batch system instead of working here
@@ -40,24 +40,24 @@ pub(crate) struct ShareOptions {
     /// With --launcher, words before the program's own: 'apptainer exec image.sif'
     #[arg(long, value_name = "WORDS", requires = "launcher", value_parser = script::line)]
     pub(crate) slurm_prefix: Option<String>,
-    /// With --launcher, most tasks that run at the same time
+    /// With --launcher, maximum number of tasks that run at the same time
     #[arg(long, value_name = "N", requires = "launcher", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) slurm_at_once: Option<u16>,
 }
 
 impl ShareOptions {
-    /// The share in force: all there is, where none is named.
+    /// Returns the share in force: all of the work if none is named.
     pub(crate) fn shard(&self) -> Shard {
         self.shard.unwrap_or(Shard::ALL)
     }
 
-    /// How a command ends that came to this: a task has done its work, whatever the work says.
+    /// Returns the outcome of a command: with `--as-task`, a failed check counts as done.
     pub(crate) fn outcome(&self, outcome: Outcome) -> Outcome {
         if self.as_task && outcome == Outcome::CheckFailed { Outcome::Done } else { outcome }
     }
 }
 
-/// Options for whoever launches, with and without a value: the tasks get none of them.
+/// Options of the launcher, with and without a value; they are not passed to the tasks.
 const OF_THE_LAUNCH: ([&str; 7], [&str; 4]) = (
     [
         "--launcher",
@@ -71,7 +71,7 @@ const OF_THE_LAUNCH: ([&str; 7], [&str; 4]) = (
     ["--write-only", "--as-task", "--json", "--resume"],
 );
 
-/// The words of a command line without those that say who is to run it and how.
+/// Removes the launcher's options from the words of a command line.
 pub(crate) fn without_launcher(words: &[String]) -> Vec<String> {
     let (valued, flags) = OF_THE_LAUNCH;
     let mut kept = Vec::new();
@@ -89,7 +89,7 @@ pub(crate) fn without_launcher(words: &[String]) -> Vec<String> {
     kept
 }
 
-/// Who runs the shares.
+/// Batch system that runs the shares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Launcher {
     /// Slurm job arrays, submitted with sbatch
@@ -116,7 +116,7 @@ mod tests {
         );
     }
 
-    /// An option that comes to these has to be taken from the words of the tasks as well.
+    /// An option added to these must be removed from the words of the tasks as well.
     #[test]
     fn every_option_of_the_launch_is_known() {
         let command = ShareOptions::augment_args(clap::Command::new("x"));

@@ -1,16 +1,16 @@
-//! The script of a Slurm job array.
+//! Script of a Slurm job array.
 
 use std::path::Path;
 
-/// An option of `sbatch` as a line of the script has it.
+/// Option of `sbatch`, as in a line of the script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct SlurmOption(String);
 
-/// Options that follow from others here, and the one to use instead.
+/// Options that follow from other options of this program, and those to use instead.
 const OWN: [(&str, &str); 2] = [("array", "--shards and --slurm-at-once"), ("parsable", "--json")];
 
 impl SlurmOption {
-    /// Reads `NAME=VALUE`, or `NAME` of an option without a value; dashes before the name may be there.
+    /// Parses `NAME=VALUE`, or `NAME` for an option without a value; dashes before the name are allowed.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let text = line(text)?;
         let text = text.trim_start_matches('-');
@@ -24,7 +24,7 @@ impl SlurmOption {
         Ok(Self(text.to_owned()))
     }
 
-    /// A value with blanks in it stands in double quotes.
+    /// Returns the option's text; a value that contains spaces is put in double quotes.
     fn text(&self) -> String {
         match self.0.split_once('=') {
             Some((name, value)) if value.contains(char::is_whitespace) => {
@@ -35,7 +35,7 @@ impl SlurmOption {
     }
 }
 
-/// A text of one line.
+/// Checks that a text is a single, non-empty line.
 pub(super) fn line(text: &str) -> Result<String, String> {
     match text.trim() {
         "" => Err("expected some words".to_owned()),
@@ -46,19 +46,19 @@ pub(super) fn line(text: &str) -> Result<String, String> {
     }
 }
 
-/// What the script says.
+/// Content of the script.
 pub(super) struct Script<'a> {
     /// Name of the job.
     pub(super) name: &'a str,
     pub(super) program: &'a Path,
     /// Words of the program's command line, without those of the share.
     pub(super) words: &'a [String],
-    /// Relative paths start here.
+    /// Folder to which relative paths refer.
     pub(super) here: &'a Path,
-    /// Where the logs go, below this folder.
+    /// Folder below which the logs are written.
     pub(super) folder: &'a Path,
     pub(super) shares: usize,
-    /// The tasks of the first array, as `--array` takes them.
+    /// Tasks of the first array, in the form of `--array`.
     pub(super) array: String,
     pub(super) threads: u16,
     pub(super) options: &'a [SlurmOption],
@@ -67,8 +67,9 @@ pub(super) struct Script<'a> {
 }
 
 impl Script<'_> {
-    /// The text. A task works on the share of its number plus the script's first argument. One that Slurm puts in the
-    /// queue again goes on with what its share is missing, and adds to its log.
+    /// Returns the text of the script. A task works on the share whose number is the task's index plus the
+    /// script's first argument. A task that Slurm requeues continues with the missing parts of its share, and
+    /// appends to its log.
     pub(super) fn text(&self) -> String {
         let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' };
         let name: String = self.name.chars().map(safe).collect();
@@ -98,7 +99,7 @@ impl Script<'_> {
     }
 }
 
-/// A word as a shell takes it, whatever is in it.
+/// Quotes a word for a shell, whatever its content.
 pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -107,7 +108,7 @@ pub(super) fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
-/// As `#SBATCH` lines know quotes: double ones only.
+/// Quotes a text for `#SBATCH` lines, which accept double quotes only.
 fn double_quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\\\""))
 }

@@ -1,4 +1,4 @@
-//! Handing shares to Slurm: job arrays with one task for each share.
+//! Submission of shares to Slurm: job arrays with one task for each share.
 
 use super::ShareOptions;
 use super::script::{Script, quoted};
@@ -14,23 +14,23 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Name of the job script in the folder of the work.
+/// Name of the job script in the folder of results.
 const SCRIPT: &str = "slurm.sh";
 
-/// Slurm's own `MaxArraySize` where nobody has set another: array indices stay below it.
+/// Slurm's default `MaxArraySize`: array indices stay below it.
 const USUAL_ARRAY_SIZE: usize = 1001;
 
-/// The work to be shared.
+/// Work to be shared.
 pub(crate) struct Work<'a> {
     /// Name of the job.
     pub(crate) name: &'a str,
-    /// The folder of results, which all shares write to.
+    /// Folder of results, to which all shares write.
     pub(crate) folder: &'a RunFolder,
-    /// Number of runs or cases: there are no more shares than that.
+    /// Number of runs or cases, which limits the number of shares.
     pub(crate) parts: usize,
-    /// What the parts are called, one of them.
+    /// Word for one part, such as "run".
     pub(crate) part: &'static str,
-    /// The command that works on a share, without `--shard`, `--as-task` and `--threads`.
+    /// Words of the command that works on a share, without `--shard`, `--as-task` and `--threads`.
     pub(crate) words: Vec<String>,
     /// Threads of each task.
     pub(crate) threads: u16,
@@ -79,7 +79,8 @@ pub(crate) fn launch(
     Ok(Outcome::Done)
 }
 
-/// A job array: the indices of its tasks, as `--array` takes them, and what their shares are ahead of these.
+/// Job array: the indices of its tasks, in the form of `--array`, and the offset from an index to the number
+/// of its share.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Array {
     indices: String,
@@ -88,7 +89,8 @@ struct Array {
 }
 
 impl Array {
-    /// The command that submits it, to start once `after` is through where there is such a job.
+    /// Returns the words of the command that submits the array. If `after` names a job, the array starts once
+    /// that job has ended.
     fn words(&self, script: &Path, after: Option<&str>) -> Vec<String> {
         let mut words =
             vec!["sbatch".to_owned(), "--parsable".to_owned(), format!("--array={}", self.indices)];
@@ -98,7 +100,7 @@ impl Array {
     }
 }
 
-/// The arrays that shares take, none larger than the cluster allows.
+/// Splits the shares into arrays, none larger than the cluster allows.
 fn split(shares: usize, largest: usize, at_once: Option<u16>) -> Vec<Array> {
     let throttle = at_once.map(|tasks| format!("%{tasks}")).unwrap_or_default();
     let array = |offset: usize| {
@@ -108,7 +110,7 @@ fn split(shares: usize, largest: usize, at_once: Option<u16>) -> Vec<Array> {
     (0..shares).step_by(largest.max(1)).map(array).collect()
 }
 
-/// Most tasks of one array, which is one less than the cluster's `MaxArraySize`.
+/// Returns the maximum number of tasks in one array, which is one less than the cluster's `MaxArraySize`.
 fn largest_array() -> usize {
     let told = Command::new("scontrol").args(["show", "config"]).output().ok();
     let size = told.and_then(|told| array_size(&String::from_utf8_lossy(&told.stdout)));
@@ -120,7 +122,8 @@ fn array_size(config: &str) -> Option<usize> {
     line.split_once('=')?.1.trim().parse().ok()
 }
 
-/// Submits the arrays one after the other; where only so many tasks may run at once, each waits for the one before.
+/// Submits the arrays one after the other; if the number of parallel tasks is limited, each array waits for
+/// the previous one.
 fn submitted(
     arrays: &[Array],
     script: &Path,
@@ -129,7 +132,7 @@ fn submitted(
     let mut launched: Vec<LaunchedArray> = Vec::new();
     for array in arrays {
         let after = launched.last().filter(|_| options.slurm_at_once.is_some());
-        // Where nothing is submitted there is no number yet.
+        // If nothing is submitted, there is no job number yet.
         let after = after.map(|before| before.job.map_or_else(|| "JOB".to_owned(), |job| job.to_string()));
         let words = array.words(script, after.as_deref());
         let command = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
@@ -142,16 +145,16 @@ fn submitted(
     Ok(launched)
 }
 
-/// Why an array was not submitted.
+/// Reason why an array was not submitted.
 #[derive(Debug)]
 enum Problem {
-    /// There is no `sbatch`.
+    /// There is no `sbatch` on this machine.
     Absent,
-    /// It did not take the script.
+    /// `sbatch` refused the script.
     Refused(String),
 }
 
-/// The message for an array of this script, after some others were submitted.
+/// Builds the message for an array that was not submitted, after some others were.
 fn refused(problem: Problem, script: &Path, command: &str, before: &[LaunchedArray]) -> LaunchError {
     let script = script.display().to_string();
     let complaint = match problem {
@@ -166,7 +169,7 @@ fn refused(problem: Problem, script: &Path, command: &str, before: &[LaunchedArr
     LaunchError::Refused { script, complaint, submitted }
 }
 
-/// Submits an array; gives the job's number.
+/// Submits an array and returns the job's number.
 fn submit(words: &[String]) -> Result<u64, Problem> {
     let (program, rest) = words.split_first().ok_or(Problem::Absent)?;
     let output = Command::new(program).args(rest).output().map_err(|error| match error.kind() {
@@ -177,7 +180,7 @@ fn submit(words: &[String]) -> Result<u64, Problem> {
     if !output.status.success() {
         return Err(Problem::Refused(said(&output.stderr)));
     }
-    // `--parsable`: the number, and behind a semicolon the cluster.
+    // With `--parsable`, the output is the number, followed by a semicolon and the cluster.
     let text = said(&output.stdout);
     let number = text.split(';').next().and_then(|number| number.trim().parse().ok());
     number.ok_or_else(|| Problem::Refused(format!("it answered `{text}`, not with the number of a job")))

@@ -1,13 +1,13 @@
-//! The one place that prints.
+//! Printing to the terminal. No other module prints.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 
-/// Why a result did not reach standard output, the first time. It is asked for at the end: a run whose folder is
-/// written is to be completed all the same.
+/// Reason why the first lost result did not reach standard output. It is checked at the end, so that a run
+/// whose folder is written is completed all the same.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// A result, on standard output. A reader that has gone away (`| head`) is no error.
+/// Prints a result on standard output. A reader that has gone away (`| head`) is not an error.
 pub(crate) fn result(text: &str) {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
@@ -18,12 +18,13 @@ pub(crate) fn result(text: &str) {
     }
 }
 
-/// Why some result did not reach standard output; `None` where all did.
+/// Returns the reason why some result did not reach standard output; `None` if all did.
 pub(crate) fn lost() -> Option<&'static str> {
     LOST.get().map(String::as_str)
 }
 
-/// A table, on standard output: on a terminal, lines that hold one of these words in red.
+/// Prints a table on standard output; on a terminal, lines that contain one of the words `red` are printed in
+/// red.
 pub(crate) fn table(text: &str, red: &[&str]) {
     if !std::io::stdout().is_terminal() {
         return result(text);
@@ -35,17 +36,17 @@ pub(crate) fn table(text: &str, red: &[&str]) {
     result(&lines.collect::<Vec<_>>().join("\n"));
 }
 
-/// A remark, on standard error. Where that cannot be written there is nobody to tell, and the work goes on.
+/// Prints a remark on standard error. If that fails, there is nobody to tell, and the work continues.
 pub(crate) fn remark(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
-/// An error, on standard error.
+/// Prints an error on standard error.
 pub(crate) fn error(text: &str) {
     remark(&format!("error: {text}"));
 }
 
-/// What one of many failed of, on standard error; red on a terminal.
+/// Prints the failure of one of many runs on standard error, in red on a terminal.
 pub(crate) fn failure(text: &str) {
     if std::io::stderr().is_terminal() {
         remark(&format!("\u{1b}[31m{text}\u{1b}[0m"));

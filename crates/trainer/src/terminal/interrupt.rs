@@ -1,8 +1,10 @@
-//! Ctrl-C, SIGTERM, and `q` with Enter: the program ends within a second, whatever it computes.
+//! Interruption by Ctrl-C, SIGTERM, or `q` with Enter: the program ends within a second, whatever it
+//! computes.
 //!
-//! Who computes is asked first, and who has steps ends after the one in progress, with a result. A single step can take
-//! longer than that: a factorization of a large matrix, a diagnosis. The program then leaves in the middle of it. What
-//! was kept before is whole, since every file is written beside its place and moved there; resuming goes on from it.
+//! A computation is first asked to stop; one that has steps ends after the current step, with a result. A
+//! single step can take longer than a second: a factorization of a large matrix, a diagnosis. The program
+//! then ends in the middle of it. Files saved before are whole, since every file is written under a temporary
+//! name and renamed; resuming continues from them.
 
 use crate::error::TrainerError;
 use crate::terminal::console;
@@ -12,17 +14,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 static CANCEL: Cancel = Cancel::new();
-/// How many threads are writing results.
+/// Number of threads that are writing results.
 static SAVING: AtomicUsize = AtomicUsize::new(0);
 
 /// Exit code of a process that ended on request.
 const INTERRUPTED: i32 = 130;
-/// What is computed has so long to end by itself: a second, less what it takes to notice and to give memory back.
+/// Time that a computation has to end by itself: a second, less the time to notice the request and to free
+/// memory.
 const PATIENCE: Duration = Duration::from_millis(750);
-/// Between two looks at whether somebody asked.
+/// Pause between two checks for a request.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Results are being written as long as this lives: the program is not left meanwhile.
+/// Guard that keeps the program from ending while results are being written.
 #[derive(Debug)]
 pub(crate) struct Saving(());
 
@@ -39,8 +42,8 @@ impl Drop for Saving {
     }
 }
 
-/// The request to stop that Ctrl-C, SIGTERM and `q` with Enter make, for work that has steps. A second signal ends the
-/// process at once.
+/// Returns the request to stop that Ctrl-C, SIGTERM and `q` with Enter make, for work that has steps. A
+/// second signal ends the process at once.
 pub(crate) fn watch() -> Result<&'static Cancel, TrainerError> {
     watch_for(
         PATIENCE,
@@ -48,7 +51,7 @@ pub(crate) fn watch() -> Result<&'static Cancel, TrainerError> {
     )
 }
 
-/// The same for work that has nothing to show before its end.
+/// Returns the request to stop for work that has no result before its end: the process ends without waiting.
 pub(crate) fn watch_impatiently() -> Result<&'static Cancel, TrainerError> {
     watch_for(Duration::ZERO, "interrupted; nothing was written")
 }
@@ -63,7 +66,7 @@ fn watch_for(patience: Duration, remark: &'static str) -> Result<&'static Cancel
     ctrlc::set_handler(handler)
         .map_err(|error| TrainerError::System { what: "Ctrl-C", problem: error.to_string() })?;
     quit::watch(&CANCEL);
-    // It ends with the program; nothing waits for it.
+    // The thread ends with the program; nothing waits for it.
     std::thread::spawn(move || {
         while !CANCEL.is_requested() {
             std::thread::sleep(LOOK);

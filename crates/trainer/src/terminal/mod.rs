@@ -1,4 +1,4 @@
-//! What stands between the program and the one who runs it: output, progress, interruption.
+//! User interface on the terminal: output, progress, interruption.
 
 pub(crate) mod console;
 pub(crate) mod interrupt;

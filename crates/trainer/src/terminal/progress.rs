@@ -9,10 +9,10 @@ use std::fmt::Display;
 use std::io::IsTerminal;
 use std::time::Duration;
 
-/// Time between two pictures of a stage that goes on.
+/// Time between two redraws of a stage in progress.
 const TICK: Duration = Duration::from_millis(200);
 
-/// Progress over the fits of an experiment; of a single one, over its steps.
+/// Progress over the fits of an experiment or, with a single fit, over its steps.
 pub(crate) struct Progress {
     bar: ProgressBar,
     unit: &'static str,
@@ -21,13 +21,13 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Over the steps of one seed, or over several seeds.
+    /// Creates the progress over the steps of one seed, or over several seeds.
     pub(crate) fn over_seeds(seeds: u64, quiet: bool) -> Self {
         let unit = if seeds == 1 { "steps" } else { "seeds" };
         Self::new(seeds, unit, seeds == 1, quiet)
     }
 
-    /// Over so many of something, such as `"fits"`.
+    /// Creates the progress over `count` items of a kind, such as `"fits"`.
     pub(crate) fn over(count: u64, unit: &'static str, quiet: bool) -> Self {
         Self::new(count, unit, false, quiet)
     }
@@ -45,7 +45,7 @@ impl Progress {
         Self { bar, unit, counts_steps, lines: !terminal && !quiet }
     }
 
-    /// Over stages of which nobody knows how long they take: what is done now, and since when.
+    /// Creates the progress over stages of unknown duration: shows the current stage and the time elapsed.
     pub(crate) fn over_stages(first: &'static str, quiet: bool) -> Self {
         let progress = Self::new(0, "stages", false, quiet);
         if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed}  {wide_msg}") {
@@ -58,12 +58,12 @@ impl Progress {
         progress
     }
 
-    /// The next stage has begun.
+    /// Starts the next stage.
     pub(crate) fn stage(&self, now: &'static str) {
         self.bar.set_message(now);
     }
 
-    /// A step of the only fit.
+    /// Reports a step of the only fit.
     pub(crate) fn step(&self, step: &Step) {
         if self.counts_steps {
             self.bar.set_length(step.planned);
@@ -72,7 +72,7 @@ impl Progress {
         }
     }
 
-    /// A fit that is done, or why it is not.
+    /// Reports a finished fit, or the reason why it failed.
     pub(crate) fn fit_done<E: Display>(&self, method: &str, seed: u64, fit: Result<&SeedRow, E>) {
         let line = match fit {
             Ok(row) => format!(
@@ -93,7 +93,7 @@ impl Progress {
         }
     }
 
-    /// A run that came to its end, and what became of it.
+    /// Reports the end of a run.
     pub(crate) fn run_done(&self, said: &str) {
         self.bar.inc(1);
         if self.lines {
@@ -103,13 +103,13 @@ impl Progress {
         self.bar.set_message(said.to_owned());
     }
 
-    /// How many are done, and of how many.
+    /// Returns the number of finished items and the total number.
     fn place(&self) -> (u64, u64) {
         // A bar without a length has nothing to count to.
         (self.bar.position(), self.bar.length().unwrap_or(0))
     }
 
-    /// One more of very many is done: a line for every tenth part of them.
+    /// Reports one more of very many items as done; prints a line for every tenth of them.
     pub(crate) fn one_of_many_done(&self) {
         self.bar.inc(1);
         let (done, all) = self.place();
@@ -118,7 +118,8 @@ impl Progress {
         }
     }
 
-    /// So many of very many are done: a line wherever another tenth part of them is.
+    /// Sets the number of finished items among very many; prints a line whenever another tenth of them is
+    /// done.
     pub(crate) fn so_many_done(&self, done: u64) {
         let (before, all) = self.place();
         self.bar.set_position(done);
@@ -127,7 +128,7 @@ impl Progress {
         }
     }
 
-    /// Prints something without tearing the bar.
+    /// Prints something without disturbing the bar.
     pub(crate) fn aside(&self, print: impl FnOnce()) {
         self.bar.suspend(print);
     }

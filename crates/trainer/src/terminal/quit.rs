@@ -1,16 +1,16 @@
-//! `q` and Enter on a terminal: the same as Ctrl-C.
+//! Quitting with `q` and Enter on a terminal: same as Ctrl-C.
 //!
-//! A single key would need the terminal in raw mode, which a killed program leaves behind; a line does not. Nothing is
-//! read while the program is in the background: the system would stop it for that.
+//! A single key would need the terminal in raw mode, which a killed program leaves behind; a line does not.
+//! Nothing is read while the program is in the background, since the system would stop it for that.
 
 use estimator::Cancel;
 
-/// Watches for `q` where standard input is a terminal.
+/// Watches for `q` if standard input is a terminal.
 #[cfg(unix)]
 pub(crate) fn watch(cancel: &'static Cancel) {
     use std::io::IsTerminal;
     if std::io::stdin().is_terminal() {
-        // It ends with the program; nothing waits for it.
+        // The thread ends with the program; nothing waits for it.
         std::thread::spawn(move || unix::watch(cancel));
     }
 }
@@ -25,7 +25,7 @@ mod unix {
     use std::io::stdin;
     use std::time::Duration;
 
-    /// How long a line may lie there before it is seen.
+    /// Maximum time before a waiting line is noticed.
     const PATIENCE: Timespec = Timespec { tv_sec: 0, tv_nsec: 200_000_000 };
 
     pub(super) fn watch(cancel: &'static Cancel) {
@@ -45,7 +45,7 @@ mod unix {
             }
             let mut line = String::new();
             match input.read_line(&mut line) {
-                // Nothing more will come.
+                // No more input will come.
                 Ok(0) | Err(_) => return,
                 Ok(_) if line.trim().eq_ignore_ascii_case("q") => cancel.request(),
                 Ok(_) => {}

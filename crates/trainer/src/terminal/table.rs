@@ -1,8 +1,8 @@
-//! Tables and numbers as a terminal shows them.
+//! Tables for the terminal.
 
 use comfy_table::{ContentArrangement, Table, presets};
 
-/// A table with aligned columns, as wide as the terminal at most.
+/// Formats a table with aligned columns, at most as wide as the terminal.
 pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Dynamic);

@@ -1,4 +1,4 @@
-//! Simpler diagnosers, for the same records: what the diagnosis has to beat.
+//! Baseline diagnosers for the same records, which the diagnosis has to beat.
 
 mod weak_form;
 
@@ -9,37 +9,38 @@ use crate::score::{AnsweredCase, Judgment, accuracy, proportion};
 use results::{BaselineRow, SizeRow};
 use std::collections::BTreeMap;
 
-/// Answers of a simpler diagnoser to every case.
+/// Answers of a baseline diagnoser to every case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
-    /// Its id.
+    /// Identifier.
     pub id: String,
-    /// Method, in a sentence.
+    /// One-sentence description of the method.
     pub method: String,
-    /// The effect that it names, `None` for nothing; case by case.
+    /// Named effect of each case, in the order of the cases; `None` if nothing is named.
     pub answers: Vec<Option<String>>,
 }
 
-/// A record as a baseline sees it: positions at believed times.
+/// Record as a baseline sees it: positions at the logged times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaselineRecord {
-    /// Times in seconds, never decreasing.
+    /// Times in seconds, nondecreasing.
     pub times_s: Vec<f64>,
     /// Positions in rad or m.
     pub values: Vec<f64>,
-    /// The input, where there is one.
+    /// Input; `None` for a free motion.
     pub input: Option<Vec<f64>>,
 }
 
 impl BaselineRecord {
-    /// Returns whether every time has its value, and its input where there is one.
+    /// Returns `true` if every time has a value and, if there is an input, an input value.
     fn is_whole(&self) -> bool {
         let count = self.times_s.len();
         self.values.len() == count && self.input.as_ref().is_none_or(|input| input.len() == count)
     }
 }
 
-/// Always the effect that most cases of a single effect hide: what knowing the frequencies alone is worth.
+/// Baseline that always names the effect that is hidden in most cases of a single effect: the score of
+/// knowing only the frequencies.
 #[must_use]
 pub fn most_common(cases: &[AnsweredCase]) -> Baseline {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
@@ -55,7 +56,7 @@ pub fn most_common(cases: &[AnsweredCase]) -> Baseline {
     }
 }
 
-/// A baseline's scores, by the same rules as those of the diagnosis: nuisances name nothing.
+/// Scores a baseline by the same rules as the diagnosis: nuisances that it names are removed first.
 pub(crate) fn row(baseline: &Baseline, judged: &[Judgment<'_>]) -> BaselineRow {
     let named = || {
         judged.iter().zip(&baseline.answers).map(|(judgment, answer)| {

@@ -1,9 +1,10 @@
 //! Weak-form sparse identification of the missing term.
 //!
-//! The equation of motion is multiplied by test functions that vanish with their derivative at both ends of a
-//! window, and integrated by parts, so that no second derivative of the record is taken: ∫φ″θ = −∫φ·(c·θ̇ +
-//! k·θ + …). Terms of the library are thrown out one by one, first the one that is missed least; the Bayesian
-//! information criterion chooses among the laws on that path, and the term that is missed most is named.
+//! The equation of motion is multiplied by test functions that vanish, with their derivatives, at both ends
+//! of a window. Integration by parts then avoids the second derivative of the record: ∫φ″θ = −∫φ·(c·θ̇ + k·θ
+//! + …). Terms of the library are removed one by one, each time the term whose removal costs least. The
+//! Bayesian information criterion chooses among the laws on this path, and the term whose removal would cost
+//! most is named.
 //!
 //! # Reference
 //! D. A. Messenger, D. M. Bortz, Multiscale Model. Simul. 19 (2021) 1474–1497.
@@ -14,25 +15,25 @@ use dynamics::weak_form::test_function;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Id of this baseline.
+/// Identifier of this baseline.
 pub const WEAK_FORM: &str = "weak-form";
 
-/// Method, in a sentence.
+/// One-sentence description of the method.
 pub const WEAK_FORM_METHOD: &str = "weak-form sparse regression with one term for each of ten effects, the one that explains \
     most is named; it has no term for forcing, a second body, delays or the measurement chain";
 
 /// Exponent of the test function (1 − s²)^p.
 const EXPONENT: i32 = 6;
-/// Windows begin so many times in a period.
+/// Number of windows that start in each period.
 const HOPS_PER_PERIOD: f64 = 4.0;
-/// Half the width of the window, in periods, over which a velocity is taken.
+/// Half-width of the window for estimating a velocity, in periods.
 const VELOCITY_WINDOW: f64 = 1.0 / 16.0;
-/// Part of the largest speed that counts as motion.
+/// Share of the largest speed above which the body counts as moving.
 const VISIBLE: f64 = 0.02;
-/// Fewest windows.
+/// Smallest number of windows.
 const FEWEST: usize = 24;
 
-/// Effects with a term of the library, in the order of its columns.
+/// Effects with a term in the library, in the order of its columns.
 const LIBRARY: [&str; 10] = [
     "coulomb_friction",
     "stribeck_friction",
@@ -46,22 +47,23 @@ const LIBRARY: [&str; 10] = [
     "damping_drift",
 ];
 
-/// Columns that recalibration may move: velocity, position, rest position, input.
+/// Number of columns for recalibration: velocity, position, rest position, input.
 const CALIBRATION: usize = 4;
 
-/// A record as the library's terms see it.
+/// Record with the quantities that the library's terms need.
 struct Motion<'a> {
     record: &'a BaselineRecord,
     velocity: Vec<f64>,
-    /// Largest distance from the rest position and largest speed.
+    /// Largest distance from the rest position; below, the largest speed.
     amplitude: f64,
     speed: f64,
-    /// Dahl's state for a displacement of a tenth of the amplitude.
+    /// State of Dahl's friction for a displacement of a tenth of the amplitude.
     bristle: Vec<f64>,
 }
 
-/// The effect that a weak-form sparse regression names; `None` for nothing, or for records that it cannot read: without
-/// a spring, shorter than a few periods, or with another number of values or inputs than of times.
+/// Returns the effect that a weak-form sparse regression names. `None` if it names nothing or cannot read the
+/// records: a nominal simulator without a spring, records shorter than a few periods, or numbers of values or
+/// inputs that differ from the number of times.
 #[must_use]
 pub fn weak_form(records: &[BaselineRecord], nominal: &Nominal) -> Option<&'static str> {
     if !records.iter().all(BaselineRecord::is_whole) {
@@ -100,7 +102,7 @@ pub fn weak_form(records: &[BaselineRecord], nominal: &Nominal) -> Option<&'stat
     let without = |terms: &[usize], left_out: usize| -> Vec<usize> {
         terms.iter().copied().filter(|term| *term != left_out).collect()
     };
-    // Windows overlap; what lies a window's half-width apart counts as independent.
+    // Windows overlap; centers a window's half-width apart count as independent.
     let worth = (duration / period).max(2.0);
     let criterion =
         |left: f64, terms: usize| worth * left.max(f64::MIN_POSITIVE).ln() + terms as f64 * worth.ln();
@@ -134,7 +136,7 @@ impl<'a> Motion<'a> {
         let mut bristle = Vec::with_capacity(record.values.len());
         let mut before = None;
         for &value in &record.values {
-            // Exact along a path: z → s − (s − z)·exp(−path/δ).
+            // Exact along a monotonic path: z → s − (s − z)·exp(−path/δ).
             let step = value - before.replace(value).unwrap_or(value);
             let end = step.signum();
             state = end - (end - state) * (-step.abs() / (0.1 * amplitude)).exp();
@@ -143,7 +145,8 @@ impl<'a> Motion<'a> {
         Self { record, velocity, amplitude, speed, bristle }
     }
 
-    /// Returns whether the body moves all through a window: at rest dry friction is whatever holds it, and no term says that.
+    /// Returns `true` if the body moves throughout a window. At rest, dry friction takes whatever value holds
+    /// the body, which no term describes.
     fn swings(&self, center: f64, half: f64) -> bool {
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);
@@ -153,13 +156,13 @@ impl<'a> Motion<'a> {
         own.chunks(quarter).all(|part| part.iter().any(|velocity| velocity.abs() > VISIBLE * self.speed))
     }
 
-    /// A row: columns of calibration, of the library, and the target.
+    /// Returns a row: the columns for recalibration, those of the library, and the target.
     fn window(&self, center: f64, half: f64, nominal: &Nominal) -> [f64; CALIBRATION + LIBRARY.len() + 1] {
         let mut row = [0.0; CALIBRATION + LIBRARY.len() + 1];
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);
         let to = times.partition_point(|time| *time <= center + half);
-        // All lists are as long as the times, or `weak_form` had not read the record: nothing is missing.
+        // All lists are as long as the times, because `weak_form` refuses other records: nothing is missing.
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or_default();
         let rest = nominal.rest_angle();
         for index in from..to {
@@ -174,7 +177,7 @@ impl<'a> Motion<'a> {
             let velocity = at(&self.velocity, index);
             // Nothing drives a record without an input.
             let input = self.record.input.as_ref().map_or(0.0, |input| at(input, index));
-            // The mean of a sign over the sample's share of time, where it changes there.
+            // Mean of a sign over the time that belongs to the sample, in case the sign changes within it.
             let mean_sign = |value: f64, rate: f64| {
                 let change = 0.5 * rate.abs() * width;
                 if change > 0.0 { (value / change).clamp(-1.0, 1.0) } else { value.signum() }
@@ -213,7 +216,8 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Slopes of straight lines through the samples within half a window: even windows leave no error of second order.
+/// Returns slopes of straight lines through the samples within half a window; symmetric windows leave no
+/// error of second order.
 fn velocities(record: &BaselineRecord, half: f64) -> Vec<f64> {
     let times = &record.times_s;
     let slope = |time: &f64| {

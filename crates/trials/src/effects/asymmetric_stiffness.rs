@@ -1,4 +1,4 @@
-//! A spring that is stiffer on one side.
+//! Asymmetric stiffness: a spring that is stiffer on one side.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};
@@ -25,7 +25,7 @@ fn shape(situation: &Situation, draws: &mut Draws) -> Shape {
 
 fn other_law(situation: &Situation, draws: &mut Draws) -> DrawnLaw {
     let (stiffness, swing) = (situation.nominal.stiffness(), situation.amplitude);
-    // A steeper one has as much of a cubic spring in it, which together is gravity.
+    // A steeper spring would contain so much of a cubic spring that both together resemble gravity.
     let (sign, steepness) = (draws.sign(), draws.sign() * draws.uniform(0.05, 0.2) / swing);
     let coefficient = move |size: f64| sign * size * stiffness / swing;
     let law = move |size: f64| ExponentialSpring { coefficient: coefficient(size), steepness };

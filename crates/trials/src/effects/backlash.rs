@@ -1,4 +1,4 @@
-//! Play in a drive.
+//! Backlash: play in a drive.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};

@@ -1,4 +1,4 @@
-//! A clock whose rate changes.
+//! Clock drift: a clock whose rate changes.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};
@@ -17,7 +17,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// A rate alone is what another stiffness and damping do to the motion; its change is not.
+/// A constant error of the rate has the same effect as another stiffness and damping; its change does not.
 fn shape(situation: &Situation, draws: &mut Draws) -> Shape {
     let (sign, rate) = (draws.sign(), draws.uniform(-0.5, 0.5));
     let duration = situation.duration();

@@ -1,11 +1,11 @@
-//! A preload.
+//! Constant torque: a preload.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};
 use dynamics::{Effect, SystemEffect};
 
 pub(super) const EFFECT: TrialEffect = TrialEffect {
-    // A preload is a rest angle that the simulator does not have.
+    // A preload acts as a rest angle that the simulator lacks.
     moves_rest_angle: true,
     ..TrialEffect::new(
         Effect::System(SystemEffect::ConstantTorque),

@@ -1,4 +1,4 @@
-//! Dry friction of one torque.
+//! Coulomb friction: dry friction of constant size.
 
 use super::bristles::bristles;
 use super::size::Shape;

@@ -1,4 +1,4 @@
-//! A spring that hardens or softens.
+//! Cubic stiffness: a spring that hardens or softens.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};

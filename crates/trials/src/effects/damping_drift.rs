@@ -1,4 +1,4 @@
-//! A damping that changes with time.
+//! Damping drift: a damping that changes with time.
 
 use super::settling_drift::settling_drift;
 use super::size::Shape;
@@ -16,7 +16,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     ..TrialEffect::new(Effect::System(SystemEffect::DampingDrift), EffectClass::Damping, Size::Solved(shape))
 };
 
-/// A damping that falls must not change its sign; one that rises may rise manyfold.
+/// A falling damping must not change its sign; a rising one may increase many times over.
 fn shape(situation: &Situation, draws: &mut Draws) -> Shape {
     let falls = draws.chance(0.5);
     let (most, sign) = if falls { (0.95, -1.0) } else { (20.0, 1.0) };

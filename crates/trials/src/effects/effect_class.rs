@@ -1,34 +1,34 @@
-//! Classes of effects that explain alike.
+//! Classes of effects that act alike.
 
-/// Effects that explain alike: scores of composite cases go by class.
+/// Class of effects that act alike; composite cases are scored by class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EffectClass {
     /// Dry friction and hysteresis.
     Friction,
-    /// Springs that bend, weights.
+    /// Nonlinear springs and gravity.
     Restoring,
-    /// Drag and damping that changes.
+    /// Drag, and damping that changes.
     Damping,
-    /// Play and stops.
+    /// Backlash and end stops.
     Play,
-    /// Stiffness or clock that changes with time.
+    /// Stiffness or clock rate that changes with time.
     Drift,
-    /// A body on a spring of its own.
+    /// Second body on its own spring.
     SecondBody,
-    /// A torque from outside.
+    /// External torque that varies with time.
     Forcing,
-    /// A torque that does not change.
+    /// Constant torque.
     Preload,
     /// Delay and limits of the input.
     Actuator,
-    /// What a sensor does to a value.
+    /// Distortions of a value by the sensor.
     Sensor,
-    /// What a logger does to a stamp.
+    /// Distortions of a timestamp by the logger.
     Stamps,
 }
 
 impl EffectClass {
-    /// Every class, in the order of results.
+    /// All classes, in the order of results.
     pub(crate) const ALL: [Self; 11] = [
         Self::Friction,
         Self::Restoring,
@@ -43,7 +43,7 @@ impl EffectClass {
         Self::Stamps,
     ];
 
-    /// Its id in results.
+    /// Returns the identifier used in results.
     pub(crate) const fn id(self) -> &'static str {
         match self {
             Self::Friction => "friction",

@@ -1,4 +1,4 @@
-//! A second body on a spring.
+//! Flexible coupling: a second body on a spring.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};
@@ -18,7 +18,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// The second body's own angular frequency in rad/s.
+/// Draws the second body's own angular frequency in rad/s.
 fn frequency(situation: &Situation, draws: &mut Draws) -> f64 {
     draws.uniform(1.8, 5.0) * situation.omega()
 }

@@ -1,4 +1,4 @@
-//! The weight of an arm.
+//! Gravity: the weight of an arm.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};
@@ -24,7 +24,7 @@ fn shape(situation: &Situation, draws: &mut Draws) -> Shape {
 fn other_law(situation: &Situation, draws: &mut Draws) -> DrawnLaw {
     let (stiffness, angle) = (situation.nominal.stiffness(), draws.uniform(-PI, PI));
     let law = move |size: f64| Weight { torque: size * stiffness, angle };
-    // The vocabulary's angle counts from position 0.
+    // The vocabulary measures the angle from position 0.
     let from_zero = angle - situation.nominal.rest_angle();
     let parameters = move |size| vec![size * stiffness, from_zero];
     DrawnLaw::new(1e-2, 0.6, law, parameters, format!("at {angle:.3} rad"))

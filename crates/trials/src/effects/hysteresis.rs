@@ -1,4 +1,4 @@
-//! A torque that remembers where the motion turned.
+//! Hysteresis: a torque that depends on where the motion turned.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};
@@ -15,7 +15,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     ..TrialEffect::new(Effect::System(SystemEffect::Hysteresis), EffectClass::Friction, Size::Solved(shape))
 };
 
-/// Displacement over which the torque turns, in rad.
+/// Draws the displacement over which the torque reverses, in rad.
 fn displacement(situation: &Situation, draws: &mut Draws) -> f64 {
     draws.log_uniform(0.02, 0.3) * situation.amplitude
 }

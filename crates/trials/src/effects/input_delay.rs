@@ -1,4 +1,4 @@
-//! An input that acts late.
+//! Input delay: an input that acts late.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};

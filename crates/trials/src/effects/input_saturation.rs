@@ -1,4 +1,4 @@
-//! An input that is cut off.
+//! Input saturation: an input that is clipped.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};

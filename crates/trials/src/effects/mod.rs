@@ -1,12 +1,14 @@
-//! The effects of the vocabulary as trials hide and score them: one file each.
+//! Effects of the vocabulary as trials hide and score them, one file each.
 //!
-//! The rest of the crate asks a [`TrialEffect`] and names no effect. Nothing here is shared with the diagnosis: what a case
-//! draws must not follow from what a fit tries, nor a score's classes from those of an answer.
+//! The rest of the crate works with a [`TrialEffect`] and names no effect. Nothing here is shared with the
+//! diagnosis: neither the draws of a case nor the classes of its score may depend on what a fit tries or how
+//! an answer groups effects.
 //!
 //! # Adding an effect
-//! `effects/NAME.rs` with a constant `EFFECT`: [`TrialEffect::new`] with the effect, its class and how its size is found,
-//! most often a [`Shape`](size::Shape) drawn for a system. `gravity.rs` has all parts, `input_delay.rs` the fewest. Its
-//! module and its line in [`REGISTRY`], below, stand at the place that the effect has in `dynamics`.
+//! Add `effects/NAME.rs` with a constant `EFFECT`: [`TrialEffect::new`] with the effect, its class, and the
+//! rule for its size, usually a [`Shape`](size::Shape) drawn for a system. `gravity.rs` uses all parts,
+//! `input_delay.rs` the fewest. Add the module and the line in [`REGISTRY`] below at the effect's position in
+//! `dynamics`.
 
 mod asymmetric_stiffness;
 mod backlash;
@@ -47,7 +49,7 @@ pub(crate) use other_law::{DrawnLaw, OtherLaw};
 pub(crate) use size::{Size, Wanted};
 pub(crate) use trial_effect::{SEPARABLE_OTHERWISE, TrialEffect};
 
-/// Every effect, in the order of the vocabulary.
+/// All effects, in the order of the vocabulary.
 pub(crate) static REGISTRY: &[TrialEffect] = &[
     coulomb_friction::EFFECT,
     stribeck_friction::EFFECT,
@@ -77,12 +79,13 @@ pub(crate) static REGISTRY: &[TrialEffect] = &[
     timestamp_batching::EFFECT,
 ];
 
-/// The effect with an id.
+/// Returns the effect with an identifier.
 pub(crate) fn find(id: &str) -> Option<&'static TrialEffect> {
     REGISTRY.iter().find(|effect| effect.id() == id)
 }
 
-/// Effects that a bank hides in turn, in the order of the vocabulary; of driven records those first that need an input.
+/// Returns the effects that a bank hides in turn, in the order of the vocabulary. For driven records, effects
+/// that need an input come first.
 pub(crate) fn hidden_in(bank: Bank) -> Vec<&'static TrialEffect> {
     let mut effects: Vec<_> = REGISTRY.iter().filter(|effect| effect.is_hidden_in(bank)).collect();
     if bank == Bank::Driven {
@@ -91,7 +94,7 @@ pub(crate) fn hidden_in(bank: Bank) -> Vec<&'static TrialEffect> {
     effects
 }
 
-/// Effects with a law beside the vocabulary's, those of the stressed bank first.
+/// Returns the effects that have a law besides the vocabulary's; those of the stressed bank come first.
 pub(crate) fn by_other_laws() -> Vec<(&'static TrialEffect, OtherLaw)> {
     let own = REGISTRY.iter().filter_map(|effect| Some((effect, effect.other_law?)));
     let mut effects: Vec<_> = own.collect();
@@ -99,7 +102,7 @@ pub(crate) fn by_other_laws() -> Vec<(&'static TrialEffect, OtherLaw)> {
     effects
 }
 
-/// The class of an effect; of an id that is none, that id.
+/// Returns the class of an effect; for an identifier that is no effect, the identifier itself.
 pub(crate) fn class_of(id: &str) -> &str {
     find(id).map_or(id, |effect| effect.class.id())
 }

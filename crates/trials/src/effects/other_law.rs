@@ -1,30 +1,31 @@
-//! Laws by which an effect acts in place of the vocabulary's own.
+//! Alternative laws of effects, in place of the vocabulary's own.
 
 use crate::make::draws::Draws;
 use crate::make::integrator::TorqueLaw;
 use crate::make::open_law::OpenLaw;
 use crate::make::situation::Situation;
 
-/// A law unlike the vocabulary's that is the same effect.
+/// Law that differs from the vocabulary's but is the same effect.
 #[derive(Clone, Copy)]
 pub(crate) struct OtherLaw {
-    /// Its name in hidden truths.
+    /// Name used in hidden truths.
     pub(crate) name: &'static str,
-    /// Draws its shape for a system.
+    /// Draws the law's shape for a system.
     pub(crate) draw: fn(&Situation, &mut Draws) -> DrawnLaw,
 }
 
-/// A law with its shape drawn.
+/// Alternative law with its shape drawn.
 pub(crate) struct DrawnLaw {
     pub(crate) open: OpenLaw,
-    /// Parameters by the vocabulary's law, or the nearest to them, at a size.
+    /// Parameters of the vocabulary's law that come closest, as a function of the size.
     pub(crate) parameters: Box<dyn Fn(f64) -> Vec<f64>>,
-    /// The shape in words.
+    /// Description of the shape.
     pub(crate) words: String,
 }
 
 impl DrawnLaw {
-    /// A law and its parameters by the vocabulary as functions of the size; `guess` and `most` as of an [`OpenLaw`].
+    /// Builds a drawn law from the law and its parameters in the vocabulary, both as functions of the size;
+    /// `guess` and `most` are those of [`OpenLaw`].
     pub(crate) fn new<L: TorqueLaw + 'static>(
         guess: f64,
         most: f64,

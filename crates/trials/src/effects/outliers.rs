@@ -1,4 +1,4 @@
-//! Wrong readings.
+//! Outliers: wrong readings.
 
 use super::size::{Expected, Wanted};
 use super::{EffectClass, Size, TrialEffect};
@@ -11,7 +11,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect::new(
     Size::Expected(expected),
 );
 
-/// E‖Δ‖² = n·p·s², with 4 to 20 wrong samples expected.
+/// E‖Δ‖² = n·p·s²; the expected number of wrong samples is between 4 and 20.
 fn expected(wanted: &Wanted<'_>, draws: &mut Draws) -> Expected {
     let count = draws.uniform(4.0, 20.0);
     let values = vec![count / wanted.samples(), wanted.norm() / count.sqrt()];

@@ -1,4 +1,4 @@
-//! A torque of one frequency.
+//! Periodic forcing: an external torque with one frequency.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};
@@ -19,7 +19,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// Angular frequency in rad/s, well below or above the natural one, and phase in rad.
+/// Draws the angular frequency in rad/s, well below or above the natural one, and the phase in rad.
 fn wave(situation: &Situation, draws: &mut Draws) -> (f64, f64) {
     let below = draws.chance(0.5);
     let ratio = if below { draws.uniform(0.3, 0.8) } else { draws.uniform(1.25, 4.0) };
@@ -31,7 +31,7 @@ fn shape(situation: &Situation, draws: &mut Draws) -> Shape {
     Shape::new(1e-3, 1.0, move |size| vec![size * torque, frequency, phase])
 }
 
-/// Its phase wanders.
+/// Draws a forcing whose phase wanders.
 fn other_law(situation: &Situation, draws: &mut Draws) -> DrawnLaw {
     let (torque, (frequency, phase)) = (situation.largest_torque(), wave(situation, draws));
     let wander = draws.uniform(0.1, 0.6);

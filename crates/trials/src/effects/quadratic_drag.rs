@@ -1,4 +1,4 @@
-//! Drag that grows with the square of the velocity.
+//! Quadratic drag: drag that grows with the square of the velocity.
 
 use super::size::Shape;
 use super::{DrawnLaw, EffectClass, OtherLaw, Size, TrialEffect};

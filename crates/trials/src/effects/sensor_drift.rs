@@ -1,4 +1,4 @@
-//! A zero that moves with time.
+//! Sensor drift: a zero that moves with time.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};

@@ -1,4 +1,4 @@
-//! A sensor that follows late.
+//! Sensor lag: a sensor that follows late.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};

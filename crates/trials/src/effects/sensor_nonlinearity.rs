@@ -1,4 +1,4 @@
-//! An eccentric encoder magnet.
+//! Sensor nonlinearity: an eccentric encoder magnet.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};

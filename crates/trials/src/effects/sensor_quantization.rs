@@ -1,4 +1,4 @@
-//! Readings that are rounded.
+//! Sensor quantization: rounded readings.
 
 use super::size::{Expected, Wanted};
 use super::{EffectClass, Size, TrialEffect};

@@ -1,4 +1,4 @@
-//! A sensor whose range ends within the swing.
+//! Sensor saturation: a sensor whose range ends within the swing.
 
 use super::size::Shape;
 use super::{EffectClass, Size, TrialEffect};
@@ -16,7 +16,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// The range ends at the same distance from zero on both sides.
+/// The range is symmetric about zero.
 fn shape(situation: &Situation, _: &mut Draws) -> Shape {
     let largest = situation.amplitude + situation.nominal.rest_angle().abs();
     Shape::new(1e-2, 0.6, move |size| vec![largest * (1.0 - size)])

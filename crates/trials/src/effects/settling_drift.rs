@@ -1,12 +1,12 @@
-//! A stiffness or a damping that drifts to another value and stays there.
+//! Settling drift: a stiffness or a damping that drifts to another value and stays there.
 
 use super::DrawnLaw;
 use crate::make::draws::Draws;
 use crate::make::laws::{Drifting, ExponentialDrift};
 use crate::make::situation::Situation;
 
-/// A drift that settles. Its size is the relative change over a record at the initial rate, from about the first of `sizes` up
-/// to the second; `sign` draws its direction.
+/// Draws a drift that settles. Its size is the relative change over a record at the initial rate. `sizes` are
+/// the guess and the largest size; `sign` draws the direction.
 pub(super) fn settling_drift(
     of: Drifting,
     [guess, most]: [f64; 2],
@@ -15,7 +15,7 @@ pub(super) fn settling_drift(
     draws: &mut Draws,
 ) -> DrawnLaw {
     let duration = situation.duration();
-    // One that settles as fast as the amplitude decays is what a cubic spring or another friction does.
+    // A drift that settles as fast as the amplitude decays would resemble a cubic spring or another friction.
     let settling = draws.uniform(1.5, 5.0) * duration;
     let sign = sign(draws);
     let rate = move |size: f64| sign * size / duration;

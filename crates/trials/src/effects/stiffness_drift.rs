@@ -1,4 +1,4 @@
-//! A stiffness that changes with time.
+//! Stiffness drift: a stiffness that changes with time.
 
 use super::settling_drift::settling_drift;
 use super::size::Shape;

@@ -1,4 +1,4 @@
-//! Dry friction that is larger at rest.
+//! Stribeck friction: dry friction that is larger at rest.
 
 use super::bristles::bristles;
 use super::size::Shape;
@@ -20,7 +20,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// Static over sliding torque.
+/// Draws the static torque divided by the sliding torque.
 fn static_ratio(draws: &mut Draws) -> f64 {
     draws.uniform(1.5, 3.0)
 }

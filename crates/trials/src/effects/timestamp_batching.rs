@@ -1,4 +1,4 @@
-//! Samples that arrive in bursts.
+//! Timestamp batching: samples that arrive in bursts.
 
 use super::size::{Expected, Wanted};
 use super::{EffectClass, Size, TrialEffect};
@@ -15,8 +15,9 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// Stamps are late by anything up to an interval, so that E‖PΔ‖² ≈ T_b²/12·Σθ̇². Bursts are drawn as loggers make them, 10 to
-/// 80 ms apart, whatever was wanted: they are as detectable as they are.
+/// Timestamps are late by anything up to an interval, so that E‖PΔ‖² ≈ T_b²/12·Σθ̇². Bursts are drawn as
+/// loggers make them, 10 to 80 ms apart, whatever detectability is wanted; the resulting detectability is
+/// returned.
 fn expected(wanted: &Wanted<'_>, draws: &mut Draws) -> Expected {
     let most = (0.1 * wanted.situation.duration()).max(4.0 * wanted.period());
     let interval = draws.uniform(0.01, 0.08).clamp(2.0 * wanted.period(), most);

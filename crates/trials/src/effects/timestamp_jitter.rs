@@ -1,4 +1,4 @@
-//! Stamps that are each off.
+//! Timestamp jitter: timestamps with independent errors.
 
 use super::size::{Expected, Wanted};
 use super::{EffectClass, Size, TrialEffect};
@@ -15,7 +15,7 @@ pub(super) const EFFECT: TrialEffect = TrialEffect {
     )
 };
 
-/// E‖Δ‖² = σ_t²·Σθ̇²; at most 0.45 sample periods.
+/// E‖Δ‖² = σ_t²·Σθ̇²; σ_t is at most 0.45 sample periods.
 fn expected(wanted: &Wanted<'_>, _: &mut Draws) -> Expected {
     let deviation = (wanted.norm() / wanted.speed()).min(0.45 * wanted.period());
     Expected { values: vec![deviation], detectability: deviation * wanted.speed() / wanted.white }

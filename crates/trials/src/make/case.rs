@@ -1,18 +1,18 @@
-//! What a case is made of.
+//! Cases of trials.
 
 use crate::Hidden;
 
-/// A case: what the diagnosis is given, and what is hidden from it.
+/// A case: the files that the diagnosis gets, and the truth that is hidden from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// Name of its folder: a number that tells neither bank nor effect.
+    /// Name of the folder: a number that reveals neither bank nor effect.
     pub id: String,
-    /// The effect that the diagnosis is told not to consider.
+    /// Identifier of the effect that the diagnosis is told not to consider; `None` for no such effect.
     pub without: Option<String>,
-    /// The records as texts of CSV files, `record-000.csv` and on.
+    /// Records as texts of CSV files, `record-000.csv` and so on.
     pub records: Vec<String>,
-    /// The text of `nominal.toml`: what is believed of the system.
+    /// Text of `nominal.toml`, the nominal simulator.
     pub nominal: String,
-    /// Hidden truth; whoever diagnoses must not see it.
+    /// Hidden truth, which the diagnosis must not see.
     pub hidden: Hidden,
 }

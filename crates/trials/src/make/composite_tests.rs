@@ -1,4 +1,4 @@
-//! Of composite cases: their own and those of a folder.
+//! Tests of composite cases: those drawn here and those of a folder.
 
 use super::banks::{RigTruth, hidden};
 use super::integrator::{Moment, TorqueLaw};
@@ -33,7 +33,7 @@ fn composite_cases_hide_effects_over_two_decades_beside_small_nameless_laws() {
     assert!(rates[rates.len() - 1] > 5.0 * rates[0], "{rates:?}");
 }
 
-/// Two bodies without damping, the first held: the second swings about it at its own frequency.
+/// Two bodies without damping, the first held in place: the second swings about it at its own frequency.
 #[test]
 fn a_second_body_beside_one_that_is_held_swings_at_its_own_frequency() {
     let law = SecondBody { inertia: 2.0, frequency: 3.0, damping_ratio: 0.1 };
@@ -42,7 +42,7 @@ fn a_second_body_beside_one_that_is_held_swings_at_its_own_frequency() {
     let (duration, steps) = (0.8, 200_000);
     let step = duration / f64::from(steps);
     for _ in 0..steps {
-        // The law's own acceleration, by the midpoint rule.
+        // Acceleration by the law's own torque, integrated with the midpoint rule.
         let rate = |position: f64, velocity: f64| {
             -law.torque(&Moment { hidden: [position, velocity], ..held }) / law.inertia
         };
@@ -83,7 +83,8 @@ fn rigs_keep_their_records_and_hide_sizes_apart() {
 fn a_law_alone_allows_classes_that_leave_little_of_it_and_a_small_one_asks_for_no_verdict() {
     let cases = rigs();
     let alone = cases.iter().find(|case| case.hidden.foreign.is_some()).unwrap();
-    // An exponential spring is a restoring torque by its mechanism, and cubic and quadratic springs leave 0.23 of the noise.
+    // An exponential spring is a restoring torque by its mechanism; cubic and quadratic springs leave 0.23 ×
+    // noise of it.
     assert!(alone.hidden.allowed.iter().all(|class| class == "restoring"), "{:?}", alone.hidden.allowed);
     assert!(!alone.hidden.allowed.is_empty() && alone.hidden.unlisted.is_empty());
     let small =

@@ -1,19 +1,19 @@
-//! Why a case cannot be made.
+//! Errors in making a case.
 
 use dynamics::DynamicsError;
 use record::{Fault, RecordError};
 use simulator::GenerationError;
 use thiserror::Error;
 
-/// Why a case cannot be made.
+/// Reason why a case cannot be made.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TrialError {
-    /// A case beyond the plan's.
+    /// The number is beyond the plan's cases.
     #[error("there is no case {index}; the plan has {cases}, counted from 0")]
     NoSuchCase {
-        /// The number asked for.
+        /// Requested number.
         index: usize,
-        /// How many there are.
+        /// Number of cases.
         cases: usize,
     },
     /// The system, its motion or its measurement chain is impossible.
@@ -22,41 +22,41 @@ pub enum TrialError {
     /// A record could not be generated.
     #[error(transparent)]
     Generation(#[from] GenerationError),
-    /// Remainder of the measurement chain that is no record.
+    /// The output of the measurement chain is no valid record.
     #[error("what is left is no record: {0}")]
     Fault(#[from] Fault),
-    /// A file of a bank from outside cannot be read.
+    /// An external file of a bank cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// No size of an effect is as detectable as wanted.
+    /// No size of an effect reaches the wanted detectability.
     #[error(
         "{effect}: no size reaches a detectability of {wanted} in {attempts} draws of system and shape; lengthen the record (record.seconds) or leave that detectability out (trials.detectabilities)"
     )]
     OutOfReach {
-        /// The effect's id, or the name of the law.
+        /// Identifier of the effect, or name of the law.
         effect: String,
-        /// The detectability wanted.
+        /// Wanted detectability.
         wanted: f64,
-        /// How many were drawn.
+        /// Number of draws of system and shape.
         attempts: usize,
     },
-    /// A pair of which one is no effect.
+    /// One half of a pair is no effect of the vocabulary.
     #[error("there is no effect {id}: a pair names it")]
     NoEffect {
-        /// The id.
+        /// Unknown identifier.
         id: String,
     },
-    /// Nothing to hide, or no size to hide it at.
+    /// There is nothing to hide, or no detectability to hide it at.
     #[error(
         "{kinds} things to hide at {sizes} sizes: name a detectability (trials.detectabilities), or no case of this bank"
     )]
     NothingInTurn {
-        /// Number of things that take turns.
+        /// Number of different things to hide.
         kinds: usize,
         /// Number of detectabilities.
         sizes: usize,
     },
-    /// A recalibration without a unique answer: the record is too short for its period.
+    /// A recalibration has no unique answer: the record is too short for its period.
     #[error("the recalibration is singular: {samples} samples do not determine {unknowns} unknowns")]
     Singular {
         /// Number of samples.
@@ -64,14 +64,14 @@ pub enum TrialError {
         /// Number of unknowns.
         unknowns: usize,
     },
-    /// A file of a bank from outside that says what it must not.
+    /// An external file of a bank has contents that it must not have.
     #[error("{path}: {problem}; {remedy}")]
     Outside {
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// What is wrong with it.
+        /// Fault of the file.
         problem: String,
-        /// What to do.
+        /// Remedy.
         remedy: &'static str,
     },
 }

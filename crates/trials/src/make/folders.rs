@@ -1,24 +1,24 @@
-//! Folders of banks that come from outside: what stands in them.
+//! Folders of external banks and their contents.
 
 use super::error::TrialError;
 use dynamics::Nominal;
 use std::path::{Path, PathBuf};
 
-/// A file with what a diagnosis left over of a measured record.
+/// File with the residual that a diagnosis left of a measured record.
 pub(crate) type ResidualFile = PathBuf;
 
-/// A case that another program made.
+/// Case that another program made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct OutsideCase {
     /// Folder with records and nominal.toml.
     folder: PathBuf,
-    /// The hidden truth.
+    /// File of the hidden truth.
     pub(crate) truth: PathBuf,
-    /// What to do where the folder cannot be used.
+    /// Remedy if the folder cannot be used.
     remedy: &'static str,
 }
 
-/// Entries of a folder in the order of their names.
+/// Lists the entries of a folder, sorted by name.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let listing = std::fs::read_dir(folder).map_err(|error| format!("cannot be read: {error}"))?;
     let mut paths: Vec<PathBuf> = listing.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -26,26 +26,26 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(paths)
 }
 
-/// The last part of a path.
+/// Returns the last component of a path.
 pub(crate) fn file_name(path: &Path) -> String {
-    // Only a path that ends in `..` has none, and no entry of a folder does.
+    // Only a path that ends in `..` has no file name, and no entry of a folder does.
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Returns whether a file is named `PREFIX*.csv`.
+/// Returns `true` if a file is named `PREFIX*.csv`.
 fn is_table(path: &Path, prefix: &str) -> bool {
     let name = file_name(path);
     name.starts_with(prefix) && name.ends_with(".csv")
 }
 
-/// The residual files of a folder.
+/// Lists the residual files of a folder.
 pub(crate) fn residual_files(folder: &Path) -> Result<Vec<ResidualFile>, String> {
     let mut files = entries(folder)?;
     files.retain(|path| is_table(path, "residual-"));
     if files.is_empty() { Err("holds no residual-*.csv".to_owned()) } else { Ok(files) }
 }
 
-/// The cases of a folder that a physics engine's script made.
+/// Lists the cases of a folder that a physics engine's script made.
 pub(crate) fn engine_cases(folder: &Path) -> Result<Vec<OutsideCase>, String> {
     let cases = outside_cases(folder, &folder.join("hidden"), "make the records again")?;
     if cases.is_empty() {
@@ -55,7 +55,7 @@ pub(crate) fn engine_cases(folder: &Path) -> Result<Vec<OutsideCase>, String> {
     }
 }
 
-/// The rigs of a folder, by name.
+/// Lists the rigs of a folder, sorted by name.
 pub(crate) fn rig_cases(folder: &Path) -> Result<Vec<OutsideCase>, String> {
     let remedy = "make the records again with experiments/rigs/records.py";
     let cases = outside_cases(&folder.join("cases"), &folder.join("truths"), remedy)?;
@@ -66,7 +66,7 @@ pub(crate) fn rig_cases(folder: &Path) -> Result<Vec<OutsideCase>, String> {
     }
 }
 
-/// Folders with a nominal simulator that a folder of truths has a file for, by name.
+/// Lists the subfolders that have a nominal simulator and a truth, sorted by name.
 fn outside_cases(folder: &Path, truths: &Path, remedy: &'static str) -> Result<Vec<OutsideCase>, String> {
     let case = |path: PathBuf| OutsideCase {
         truth: truths.join(format!("{}.json", file_name(&path))),
@@ -78,10 +78,10 @@ fn outside_cases(folder: &Path, truths: &Path, remedy: &'static str) -> Result<V
 }
 
 impl OutsideCase {
-    /// Its record files in the order of their names.
+    /// Returns the record files, sorted by name.
     ///
     /// # Errors
-    /// [`TrialError::Outside`] where there is none.
+    /// [`TrialError::Outside`] if there is none.
     pub(crate) fn records(&self) -> Result<Vec<PathBuf>, TrialError> {
         let refused = |problem: String| self.refused(&self.folder, problem);
         let mut paths = entries(&self.folder).map_err(refused)?;
@@ -89,10 +89,10 @@ impl OutsideCase {
         if paths.is_empty() { Err(refused("holds no record-*.csv".to_owned())) } else { Ok(paths) }
     }
 
-    /// What is believed of the system.
+    /// Reads the nominal simulator.
     ///
     /// # Errors
-    /// [`TrialError::Outside`] where `nominal.toml` cannot be read or is no nominal simulator.
+    /// [`TrialError::Outside`] if `nominal.toml` cannot be read or is no nominal simulator.
     pub(crate) fn nominal(&self) -> Result<Nominal, TrialError> {
         let path = self.folder.join("nominal.toml");
         toml::from_str(&self.text(&path)?).map_err(|error| TrialError::Outside {
@@ -102,15 +102,15 @@ impl OutsideCase {
         })
     }
 
-    /// The text of one of its files.
+    /// Reads the text of one of the case's files.
     ///
     /// # Errors
-    /// [`TrialError::Outside`] where it cannot be read.
+    /// [`TrialError::Outside`] if it cannot be read.
     pub(crate) fn text(&self, path: &Path) -> Result<String, TrialError> {
         std::fs::read_to_string(path).map_err(|error| self.refused(path, format!("cannot be read: {error}")))
     }
 
-    /// The error of a file that cannot be used.
+    /// Returns the error for a file that cannot be used.
     pub(crate) fn refused(&self, path: &Path, problem: String) -> TrialError {
         TrialError::Outside { path: path.display().to_string(), problem, remedy: self.remedy }
     }

@@ -1,17 +1,17 @@
-//! Motions by another way than either integrator of [`dynamics`]: exact steps of the linear oscillator
-//! between kicks.
+//! Integrator of motions that is independent of both integrators of [`dynamics`]: exact steps of the linear
+//! oscillator between kicks.
 //!
 //! A step of length h is (Strang's splitting)
 //!
 //! 1. hidden states over h/2 with position and velocity held, by their exact exponential;
 //! 2. a kick of the velocity by the law's torque over h/2;
 //! 3. the linear oscillator with its input, exactly, over h;
-//! 4. 2 and 1 again, in the other order.
+//! 4. 2 and 1 again, in reverse order.
 //!
-//! It is of second order, and exact where there is no law. A step is at most 0.004/ω and a sixteenth of the
-//! time between samples. The error of first order in the law's part of the spring's torque averages out over
-//! a swing, so that no phase builds up with it. Dry friction is never a jump here: laws are continuous, with
-//! hidden states that are stiff, which is what the exponentials are for.
+//! The scheme is of second order, and exact without a law. A step is at most 0.004/ω and at most a sixteenth
+//! of the time between samples. The error that is first order in the ratio of the law's torque to the
+//! spring's averages out over a swing, so that no phase error accumulates from it. Dry friction is never a
+//! jump here: laws are continuous, with stiff hidden states, which the exponentials handle.
 //!
 //! # Reference
 //! Strang, SIAM Journal on Numerical Analysis 5 (1968) 506; Hairer, Lubich, Wanner, Geometric Numerical
@@ -24,7 +24,7 @@ use dynamics::{Nominal, Start};
 /// Hidden states of a law outside the vocabulary.
 pub(crate) type Hidden = [f64; 2];
 
-/// Where a torque is asked for.
+/// State at which a torque is evaluated.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment {
     /// Time in seconds.
@@ -33,34 +33,34 @@ pub(crate) struct Moment {
     pub(crate) deflection: f64,
     /// Velocity in rad/s.
     pub(crate) velocity: f64,
-    /// The law's hidden states.
+    /// Hidden states of the law.
     pub(crate) hidden: Hidden,
 }
 
-/// A torque that [`dynamics`] does not know, or knows by another law.
+/// Torque that [`dynamics`] does not have, or has by another law.
 pub(crate) trait TorqueLaw {
-    /// The torque in the system's unit.
+    /// Returns the torque in the system's unit.
     fn torque(&self, moment: &Moment) -> f64;
 
-    /// The hidden states after a time in seconds, position and velocity held.
+    /// Returns the hidden states after a duration in seconds, with position and velocity held.
     fn relax(&self, moment: &Moment, _duration: f64) -> Hidden {
         moment.hidden
     }
 
-    /// The hidden states at the start.
+    /// Returns the hidden states at the start.
     fn start(&self, _deflection: f64, _velocity: f64) -> Hidden {
         [0.0; 2]
     }
 }
 
-/// Largest step in units of 1/ω.
+/// Largest step, in units of 1/ω.
 const LARGEST_PHASE: f64 = 0.004;
 
-/// Fewest steps between two samples.
+/// Smallest number of steps between two samples.
 const FEWEST_STEPS: usize = 16;
 
-/// The motion of each record of a situation with laws that add up; `disturbance` gives, for a record, a torque held
-/// from sample to sample.
+/// Returns the motion of each record of a situation, with the sum of several laws. `disturbance` returns, for
+/// a record, a torque held from sample to sample.
 pub(crate) fn motions(
     situation: &Situation,
     laws: &[&dyn TorqueLaw],
@@ -86,7 +86,7 @@ pub(crate) fn motions(
         .collect())
 }
 
-/// Laws that add up, each with its hidden states.
+/// Laws that act together, each with its hidden states.
 struct Acting<'a>(Vec<(&'a dyn TorqueLaw, Hidden)>);
 
 impl Acting<'_> {
@@ -101,7 +101,7 @@ impl Acting<'_> {
     }
 }
 
-/// The motion at evenly spaced times with a torque `held` from each of them to the next.
+/// Returns the motion at evenly spaced times, with a torque `held` from each time to the next.
 fn motion(nominal: &Nominal, start: Start, laws: &[&dyn TorqueLaw], times: &[f64], held: &[f64]) -> Motion {
     let [first, second, ..] = *times else { return Motion::default() };
     let period = second - first;
@@ -131,7 +131,7 @@ fn motion(nominal: &Nominal, start: Start, laws: &[&dyn TorqueLaw], times: &[f64
     motion
 }
 
-/// The propagator of the linear oscillator over one step with a held torque.
+/// Propagator of the linear oscillator over one step with a held torque.
 struct Drift {
     position: [f64; 2],
     velocity: [f64; 2],
@@ -139,7 +139,8 @@ struct Drift {
 }
 
 impl Drift {
-    /// From the closed form of a damped oscillation; the systems drawn are underdamped and have a spring.
+    /// Computes the propagator from the closed form of a damped oscillation; the drawn systems are
+    /// underdamped and have a spring.
     fn new(nominal: &Nominal, step: f64) -> Self {
         let decay = 0.5 * nominal.damping() / nominal.inertia();
         let square = nominal.stiffness() / nominal.inertia();

@@ -6,7 +6,7 @@ use dynamics::reference::{Tolerance, simulate};
 use dynamics::{Active, Nominal, Start, System};
 use truth::{Excitation, Sampling, Waveform};
 
-/// As configured by default, in rad.
+/// Smallest noise of the default configuration, in rad.
 const SMALLEST_NOISE: f64 = 2e-4;
 
 pub(super) fn situation(driven: bool) -> Situation {
@@ -33,7 +33,7 @@ fn split(situation: &Situation, law: &dyn TorqueLaw) -> Motion {
     motions(situation, &[law], &|_| Vec::new()).unwrap().remove(0)
 }
 
-/// Largest difference to the reference integrator's motion with an effect of the vocabulary.
+/// Returns the largest difference from the reference integrator's motion with an effect of the vocabulary.
 fn off(situation: &Situation, law: &dyn TorqueLaw, id: &str, values: &[f64]) -> f64 {
     let system = System::new(situation.nominal, vec![Active::new(id, values).unwrap()]).unwrap();
     let input = situation.input().unwrap();
@@ -65,8 +65,8 @@ fn a_sine_spring_of_no_steepness_is_the_references_cubic_spring() {
     }
 }
 
-/// Bristles take the time √(2·bend/(ω²·A)) to turn over after a reversal: the difference falls with the root
-/// of the bend, and is extrapolated to none.
+/// After a reversal, bristles take the time √(2·bend/(ω²·A)) to turn over. The difference falls with the
+/// square root of the bend and is extrapolated to zero bend.
 #[test]
 fn bristles_that_hardly_bend_are_coulombs_friction() {
     let situation = situation(false);
@@ -102,7 +102,7 @@ fn smooth_and_kinked_laws_are_exact_far_below_the_noise() {
     ];
     for law in laws {
         let coarse = split(&situation(false), law);
-        // Sixteen steps between samples at least: four times the rate takes shorter ones.
+        // There are at least sixteen steps between samples, so four times the rate gives shorter steps.
         let mut finer = situation(false);
         finer.sampling.rate_hz *= 4.0;
         finer.sampling.samples *= 4;

@@ -1,10 +1,10 @@
-//! What a configuration of trials may hold, as JSON Schema.
+//! JSON Schema of trial configurations.
 
 use super::schema::SECTIONS;
 use serde_json::{Value, json};
 use settings::json_schema;
 
-/// JSON Schema of `task = "trials"`.
+/// Returns the JSON Schema of `task = "trials"`.
 #[must_use]
 pub fn trials_schema() -> Value {
     let mut root = json_schema::tables(SECTIONS);

@@ -1,18 +1,20 @@
-//! Drawing cases: records, a nominal simulator, and the truth that is hidden from whoever diagnoses.
+//! Drawing of cases: records, a nominal simulator, and the truth that is hidden from the diagnosis.
 //!
-//! A [`TrialPlan`] is resolved from a configuration; [`TrialPlan::case`] makes any of its cases alone, from
-//! the seed and its number. Systems, starts, sensors and what the logger does to stamps are drawn alike in
-//! every bank, so that none of it tells what is hidden.
+//! A [`TrialPlan`] is resolved from a configuration. [`TrialPlan::case`] makes any one of its cases from the
+//! seed and the case's number. Systems, starts, sensors and the logger's timestamp errors are drawn in the
+//! same way in every bank, so none of them reveals what is hidden.
 //!
 //! # Sizes
-//! Hidden effects are as large as makes them as *detectable* as configured: d = ‖P·Δ‖/σ, where Δ is what the
-//! effect adds to the samples, P takes away what a recalibration of damping, stiffness, rest angle, starts
-//! (and inertia, where there is an input) makes up for, and σ is the standard deviation of all that is
-//! white: the sensor's noise, its rounding, what scattered stamps do. In a pair P takes away the other effect
-//! too. A preload is sized with the rest angle held, as it would be nothing but another rest angle. For something
-//! foreign P takes away the nearest effects of the vocabulary too. For effects that are random the
-//! expectation of ‖Δ‖² is taken and nothing projected off; lost samples change no value and have a
-//! detectability of 0, bursts of a logger are as detectable as they are.
+//! Hidden effects are sized so that they are as *detectable* as configured. The detectability is d = ‖P·Δ‖/σ.
+//! Δ is the effect's contribution to the samples. P removes what a recalibration of damping, stiffness, rest
+//! angle and initial states (and inertia, if there is an input) can absorb. σ is the standard deviation of
+//! all white disturbances: the sensor's noise, its rounding, and the scatter of timestamps.
+//!
+//! In a pair, P also removes what the other effect can absorb. A preload is sized with the rest angle held,
+//! because otherwise it would only be another rest angle. For a law outside the vocabulary, P also removes
+//! what the nearest effects of the vocabulary can absorb. For random effects, the expectation of ‖Δ‖² is used
+//! without a projection. Lost samples change no value and have a detectability of 0. Bursts of a logger are
+//! drawn independently of the wanted detectability.
 
 mod banks;
 mod case;

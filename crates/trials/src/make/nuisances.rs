@@ -1,4 +1,4 @@
-//! What comes with records of every bank alike: an encoder's steps and what a logger does to stamps.
+//! Nuisances, which occur in records of every bank: an encoder's steps, and a logger's errors in timestamps.
 
 use super::draws::Draws;
 use super::error::TrialError;
@@ -7,25 +7,25 @@ use dynamics::{Active, ChainEffect, Effect};
 use seed::Seed;
 use std::f64::consts::TAU;
 
-/// Steps of an encoder with 12 or 13 bits a turn, in rad.
+/// Steps of an encoder with 12 or 13 bits per turn, in rad.
 const ENCODER_STEPS: [f64; 2] = [TAU / 4096.0, TAU / 8192.0];
 
 const ENCODER: Effect = Effect::MeasuringChain(ChainEffect::SensorQuantization);
 const JITTER: Effect = Effect::MeasuringChain(ChainEffect::TimestampJitter);
 
-/// The effect by which samples that share stamps are described.
+/// Effect that describes samples with shared timestamps.
 pub(crate) const BATCHING: Effect = Effect::MeasuringChain(ChainEffect::TimestampBatching);
 
-/// What the measurement chain does in every bank with the same probabilities.
+/// Effects of the measurement chain that occur in every bank with the same probabilities.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Nuisances {
-    /// The encoder's step, where the sensor has one; `nominal.toml` states it.
+    /// Step of the encoder, in rad; `None` for a sensor without steps. `nominal.toml` states it.
     pub(crate) encoder_step: Option<f64>,
-    /// What the logger does to the stamps.
+    /// Errors of the logger's timestamps; `None` for exact ones.
     pub(crate) clock: Option<Scatter>,
 }
 
-/// A part of [`Nuisances`], which an effect may be that is hidden.
+/// Part of [`Nuisances`] that does the same as some hidden effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Nuisance {
     /// [`Nuisances::encoder_step`].
@@ -34,22 +34,23 @@ pub(crate) enum Nuisance {
     Clock,
 }
 
-/// What a logger does to the stamps.
+/// Errors of a logger's timestamps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Scatter {
-    /// Samples arrive in bursts, `interval` apart in seconds.
+    /// Samples arrive in bursts.
     Batching {
-        /// Mean time between bursts.
+        /// Mean time between bursts, in seconds.
         interval: f64,
-        /// Its standard deviation as a part of the interval.
+        /// Standard deviation of the time between bursts, as a share of `interval`.
         scatter: f64,
     },
-    /// Every stamp is off; its effect on the values has this root mean square, in units of the white noise.
+    /// Every timestamp has an independent error; the root mean square of its effect on the values, in units
+    /// of the white noise.
     Jitter(f64),
 }
 
 impl Nuisances {
-    /// Draws them. Nothing that tells the bank or the effect goes in, but for the seed of the case.
+    /// Draws the nuisances. They depend only on the seed of the case, so they reveal neither bank nor effect.
     pub(crate) fn draw(seed: &Seed) -> Self {
         let mut draws = Draws::new(&seed.child("nuisances"));
         let step = ENCODER_STEPS.get(draws.below(ENCODER_STEPS.len())).copied();
@@ -65,8 +66,8 @@ impl Nuisances {
         Self { encoder_step, clock }
     }
 
-    /// Those that remain beside hidden effects: none does what a hidden effect does too, and none scatters
-    /// stamps where their scatter is hidden.
+    /// Returns the nuisances that remain beside hidden effects: none that does the same as a hidden effect,
+    /// and none that scatters timestamps if a hidden effect does so.
     pub(crate) fn beside(mut self, hidden: impl IntoIterator<Item = Nuisance>) -> Self {
         for nuisance in hidden {
             match nuisance {
@@ -77,7 +78,7 @@ impl Nuisances {
         self
     }
 
-    /// As effects of the measurement chain, for motions with a mean square velocity.
+    /// Returns the nuisances as effects of the measurement chain, for motions with a mean square velocity.
     pub(crate) fn active(
         &self,
         situation: &Situation,
@@ -103,15 +104,16 @@ impl Nuisances {
         Ok(active)
     }
 
-    /// Standard deviation of the stamps in seconds; at most a third of a sample period.
+    /// Returns the standard deviation of the timestamps in seconds: at most 0.3 sample periods, and 0 without
+    /// jitter.
     fn jitter_deviation(&self, situation: &Situation, square_velocity: f64) -> f64 {
         let Some(Scatter::Jitter(part)) = self.clock else { return 0.0 };
         let velocity = square_velocity.sqrt().max(f64::MIN_POSITIVE);
         (part * situation.noise / velocity).min(0.3 / situation.sampling.rate_hz)
     }
 
-    /// Standard deviation of all that is white in the values: the sensor's noise, its rounding, and what
-    /// scattered stamps do to them.
+    /// Returns the standard deviation of all white disturbances of the values: the sensor's noise, its
+    /// rounding, and the effect of scattered timestamps.
     pub(crate) fn white(&self, situation: &Situation, square_velocity: f64) -> f64 {
         // A sensor without steps rounds nothing.
         let rounding = self.encoder_step.map_or(0.0, |step| step * step / 12.0);

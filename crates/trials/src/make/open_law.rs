@@ -1,19 +1,19 @@
-//! Laws whose size is open.
+//! Laws whose size is not yet determined.
 
 use super::integrator::TorqueLaw;
 
-/// A law whose size is open.
+/// Law whose size is not yet determined.
 pub(crate) struct OpenLaw {
-    /// A size to start from.
+    /// Size from which the search starts.
     pub(crate) guess: f64,
-    /// The largest that makes sense.
+    /// Largest size that makes sense.
     pub(crate) most: f64,
-    /// Makes the law at a size.
+    /// Builds the law at a size.
     pub(crate) law: Box<dyn Fn(f64) -> Box<dyn TorqueLaw>>,
 }
 
 impl OpenLaw {
-    /// A law as a function of its size.
+    /// Wraps a law given as a function of its size.
     pub(crate) fn new<L: TorqueLaw + 'static>(
         guess: f64,
         most: f64,
@@ -23,7 +23,7 @@ impl OpenLaw {
     }
 }
 
-/// A law of the size found, and how detectable it is.
+/// Law with a determined size, and its detectability.
 pub(crate) struct SizedLaw {
     pub(crate) law: Box<dyn TorqueLaw>,
     pub(crate) size: f64,

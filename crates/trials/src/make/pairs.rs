@@ -3,7 +3,7 @@
 use super::error::TrialError;
 use crate::effects::{TrialEffect, find};
 
-/// Two effects that occur together, and where.
+/// Two effects that occur together, and an example of a system that has both.
 pub(crate) const PAIRS: &[(&str, &str, &str)] = &[
     ("coulomb_friction", "quadratic_drag", "a dry bearing and a paddle in air"),
     ("coulomb_friction", "gravity", "a spring-loaded arm that also hangs, on a dry bearing"),
@@ -25,10 +25,10 @@ pub(crate) const PAIRS: &[(&str, &str, &str)] = &[
     ("periodic_forcing", "sensor_drift", "a strain gauge beside a machine"),
 ];
 
-/// The effects of a pair.
+/// Returns the effects of a pair.
 ///
 /// # Errors
-/// [`TrialError::NoEffect`] where one has left the vocabulary.
+/// [`TrialError::NoEffect`] if one of them is no longer in the vocabulary.
 pub(crate) fn effects_of(
     (one, other, _): &(&str, &str, &str),
 ) -> Result<[&'static TrialEffect; 2], TrialError> {

@@ -1,4 +1,4 @@
-//! What a configuration says of the trials, and which case has which number.
+//! Trial plans: the configured trials, and the assignment of numbers to cases.
 
 use super::draws::Draws;
 use super::error::TrialError;
@@ -16,14 +16,14 @@ use settings::{Document, Resolved, SettingsError};
 use std::path::Path;
 use truth::Sampling;
 
-/// Trials as configured: how many cases of which bank, from which systems.
+/// Configured trials: number of cases of each bank, and the ranges of their systems.
 #[derive(Debug, Clone)]
 pub struct TrialPlan {
-    /// Start of the run folder's name.
+    /// Prefix of the run folder's name.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of every random draw.
     pub seed: u64,
-    /// Every value in force.
+    /// All configuration values in force, defaults included.
     pub resolved: Resolved,
     pub(crate) ranges: Ranges,
     pub(crate) sampling: Sampling,
@@ -31,19 +31,19 @@ pub struct TrialPlan {
     pub(crate) residuals: Vec<ResidualFile>,
     pub(crate) engine: Vec<OutsideCase>,
     pub(crate) rigs: Vec<OutsideCase>,
-    /// Every case, in an order that tells nothing.
+    /// All cases, in an order that reveals nothing.
     jobs: Vec<Job>,
     left_out_banks: Vec<LeftOutBank>,
 }
 
-/// A bank that was asked for and cannot be made.
+/// Bank that was requested but cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOutBank {
     /// The bank.
     pub bank: Bank,
-    /// Number of cases that were asked for.
+    /// Number of requested cases.
     pub cases: usize,
-    /// Why it is left out, and what to do.
+    /// Reason for leaving it out, and the remedy.
     pub reason: String,
 }
 
@@ -96,15 +96,14 @@ struct SensorKeys {
     largest_noise: f64,
 }
 
-/// Decimals of a file: microseconds, and far below any sensor's noise.
+/// Decimals of a file: microseconds for timestamps, and a resolution far below any sensor's noise for values.
 const STAMP_DECIMALS: u8 = 6;
 const VALUE_DECIMALS: u8 = 9;
 
 impl TrialPlan {
-    /// Checks a document, overrides applied, and looks into the folders that it names.
+    /// Checks a document, with overrides applied, and looks into the folders that it names.
     ///
-    /// A bank from outside whose folder is not there, or holds nothing, is left out:
-    /// [`TrialPlan::left_out_banks`] says so.
+    /// An external bank whose folder is missing or empty is left out; [`TrialPlan::left_out_banks`] lists it.
     ///
     /// # Errors
     /// [`SettingsError`], with file, line and column or the override that caused it.
@@ -162,34 +161,35 @@ impl TrialPlan {
         })
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     #[must_use]
     pub fn len(&self) -> usize {
         self.jobs.len()
     }
 
-    /// Returns whether there are no cases.
+    /// Returns `true` if there are no cases.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.jobs.is_empty()
     }
 
-    /// Banks that were asked for and cannot be made, because what comes from outside is not there. Whoever
-    /// runs the trials says so.
+    /// Returns the banks that were requested but cannot be made because their external files are missing.
+    /// Whoever runs the trials should report them.
     #[must_use]
     pub fn left_out_banks(&self) -> &[LeftOutBank] {
         &self.left_out_banks
     }
 
-    /// The job with a number from 0.
+    /// Returns the job with a number from 0.
     pub(crate) fn job(&self, index: usize) -> Result<Job, TrialError> {
         self.jobs.get(index).copied().ok_or(TrialError::NoSuchCase { index, cases: self.len() })
     }
 
-    /// What a bank's case of a number hides, in turn: so many rounds of everything, with a detectability each.
+    /// Returns what the case with a number in its bank hides, and its detectability: each round goes through
+    /// everything once, with one detectability per round.
     ///
     /// # Errors
-    /// [`TrialError::NothingInTurn`] where there is nothing to take turns, or no detectability.
+    /// [`TrialError::NothingInTurn`] if there is nothing to hide, or no detectability.
     pub(crate) fn turn<T: Copy>(&self, number: usize, among: &[T]) -> Result<(T, f64), TrialError> {
         let [kinds, sizes] = [among.len(), self.detectabilities.len()];
         let (round, at) = (number.checked_div(kinds), number.checked_rem(kinds));
@@ -198,7 +198,7 @@ impl TrialPlan {
         kind.zip(size).ok_or(TrialError::NothingInTurn { kinds, sizes })
     }
 
-    /// Number of different things that a bank hides, each at every detectability in turn.
+    /// Returns the number of different things that a bank hides, each at every detectability in turn.
     #[must_use]
     pub fn variety(bank: Bank) -> usize {
         match bank {
@@ -215,7 +215,7 @@ impl TrialPlan {
     }
 }
 
-/// The ranges that systems are drawn from, each with its ends in order.
+/// Returns the ranges that systems are drawn from, each with its endpoints in order.
 fn ranges(
     document: &Document,
     record: &RecordKeys,
@@ -256,7 +256,7 @@ fn ranges(
     })
 }
 
-/// Fisher and Yates's shuffle.
+/// Shuffles the jobs (Fisher–Yates).
 fn shuffled(mut jobs: Vec<Job>, seed: u64) -> Vec<Job> {
     let mut draws = Draws::new(&Seed::new(seed).child("trials").child("order"));
     for last in (1..jobs.len()).rev() {
@@ -265,8 +265,9 @@ fn shuffled(mut jobs: Vec<Job>, seed: u64) -> Vec<Job> {
     jobs
 }
 
-/// What a folder named in the configuration holds; nothing, with the reason on the list, where there is none. The bank comes
-/// with the number of its cases, and with the key that names the folder and its value.
+/// Lists the contents of a folder named in the configuration. If there are none, it returns an empty list and
+/// adds the reason to `left_out`. The tuple holds the bank, the number of its cases, the key that names the
+/// folder, and the key's value.
 fn available<T>(
     (bank, cases, key, folder): (Bank, usize, &str, &Option<String>),
     list: impl Fn(&Path) -> Result<Vec<T>, String>,

@@ -12,9 +12,11 @@ fn random_effect(id: &str, wanted: &Wanted<'_>, draws: &mut Draws) -> (Active, f
     (Active::of(effect.effect, &found.values).unwrap(), found.detectability)
 }
 
-/// ‖Δ‖² of what a chain's only effect does to values and stamps, over the square of the detectability stated,
-/// on average over draws. A stamp that is off by dt is a value that is off by θ̇·dt; what all stamps are off
-/// by is another start.
+/// Returns ‖Δ‖² of a chain's only effect on values and timestamps, divided by the square of the stated
+/// detectability and averaged over draws.
+///
+/// A timestamp error dt counts as an error θ̇·dt of the value. The mean error of all timestamps is not
+/// counted, because another initial state absorbs it.
 fn ratio(id: &str, wanted: f64, draws: u64) -> f64 {
     let situation = situation(false);
     let motion = situation.motions(&[]).unwrap().remove(0);
@@ -47,7 +49,7 @@ fn random_effects_are_as_large_as_stated() {
     for (id, wanted, draws, bar) in [
         ("sensor_quantization", 25.0, 20, 0.05),
         ("timestamp_jitter", 25.0, 40, 0.05),
-        // Chi-square with twelve degrees of freedom on average.
+        // Chi-square distributed, with twelve degrees of freedom on average.
         ("outliers", 25.0, 1000, 0.1),
         ("timestamp_batching", 25.0, 60, 0.1),
     ] {

@@ -1,6 +1,6 @@
 //! Ranges that systems are drawn from.
 
-/// Ends of what systems, starts and sensors are drawn from.
+/// Endpoints of the ranges of systems, starts and sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ranges {
     pub(crate) frequency_hz: [f64; 2],

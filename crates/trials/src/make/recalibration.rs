@@ -1,10 +1,10 @@
-//! What no recalibration absorbs of a record.
+//! Part of an effect that no recalibration absorbs.
 //!
-//! The size of an effect in noise units is d = ‖P·Δ‖/σ: Δ is what it adds to the samples, P takes away
-//! whatever damping, stiffness, rest angle, the start of each record and, where there is an input, inertia
-//! can make up for. It is computed by doing so: the noise-free samples with the effect are fitted by the
-//! nominal oscillator from its true coefficients (Gauss–Newton with exact sensitivities), and the root of
-//! the residual's sum of squares is taken over σ.
+//! The size of an effect in noise units is d = ‖P·Δ‖/σ. Δ is the effect's contribution to the samples; P
+//! removes what damping, stiffness, rest angle, the initial state of each record and, if there is an input,
+//! inertia can absorb. It is computed directly: the nominal oscillator, starting from its true coefficients,
+//! is fitted to the noise-free samples with the effect (Gauss–Newton with exact sensitivities), and the root
+//! of the residual's sum of squares is divided by σ.
 
 use super::error::TrialError;
 use super::situation::Situation;
@@ -13,46 +13,48 @@ use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use dynamics::{Active, Effect, Hold, Input, System, SystemEffect};
 use nalgebra::{DMatrix, DVector};
 
-/// What is taken away of a record beside damping, stiffness and the starts.
+/// Quantities that a fit may adjust besides damping, stiffness and initial states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Absorbed {
-    /// The rest angle; not where the hidden effect is a preload, which is a rest angle that the simulator
-    /// does not have.
+    /// `true` if the rest angle may move; `false` if the hidden effect is a preload, which acts as a rest
+    /// angle that the simulator lacks.
     pub(crate) rest_angle: bool,
-    /// Effects of the vocabulary in the system that have one parameter, at any size of either sign: those
-    /// that could stand in for something outside the vocabulary.
+    /// Effects of the system with one parameter, at any size of either sign, that could act as surrogate
+    /// effects for a law outside the vocabulary.
     pub(crate) stand_ins: &'static [SystemEffect],
-    /// A linear drift of the sensor.
+    /// `true` if a linear drift of the sensor is fitted.
     pub(crate) sensor_drift: bool,
 }
 
 impl Absorbed {
-    /// What a recalibration moves.
+    /// Quantities that a recalibration adjusts.
     pub(crate) const BY_RECALIBRATION: Self = Self { rest_angle: true, stand_ins: &[], sensor_drift: false };
 }
 
-/// Most rounds of the fit. From the truth it is nearly linear, and two are enough for most.
+/// Largest number of rounds of the fit. Starting from the truth, the problem is nearly linear, and two rounds
+/// are usually enough.
 const ROUNDS: usize = 10;
 
-/// How well a round's prediction of the next residual's norm has to come true for the fit to end.
+/// Relative accuracy with which a round must predict the next residual's norm for the fit to end.
 const SETTLED: f64 = 1e-3;
 
-/// A norm in units of the sensor's noise that counts as nothing left: a fit that gets there need not go on,
-/// and rounding may keep it from doing so.
+/// Norm, in units of the sensor's noise, that counts as zero. A fit that reaches it can stop; rounding errors
+/// may keep it from going further.
 const NOTHING: f64 = 1e-3;
 
-/// Phase in rad that a first step may move by the end of the record and still be trusted. Beyond it the fit
-/// goes over ever longer parts of the record, so that it does not end in a minimum with the wrong number of
-/// turns.
+/// Phase change in rad at the end of the record up to which a first step is trusted. Beyond it, the fit
+/// proceeds over increasing parts of the record, so that it does not end in a minimum with the wrong number
+/// of turns.
 const TRUSTED_PHASE: f64 = 0.5;
 
-/// Place of the stiffness among the unknowns.
+/// Index of the stiffness among the unknowns.
 const STIFFNESS: usize = 1;
 
-/// The parts.
+/// Increasing parts of the record for such a fit.
 const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 
-/// Root of the sum of squares that the best recalibrated oscillator leaves of noise-free records, in rad.
+/// Returns the root of the sum of squares that the best recalibrated oscillator leaves of noise-free records,
+/// in rad.
 pub(crate) fn left_over(
     situation: &Situation,
     seen: &[Samples<f64>],
@@ -63,9 +65,9 @@ pub(crate) fn left_over(
 
 /// One round of the fit.
 struct Round {
-    /// Root of the residual's sum of squares at the present unknowns.
+    /// Root of the residual's sum of squares at the current unknowns.
     norm: f64,
-    /// The same after the step, if the record were linear in the unknowns.
+    /// Predicted norm after the step, assuming that the record is linear in the unknowns.
     expected: f64,
     step: DVector<f64>,
 }
@@ -74,12 +76,12 @@ struct Recalibration<'a> {
     situation: &'a Situation,
     seen: &'a [Samples<f64>],
     model: Model,
-    /// The model's coefficients, shared by the records; the sensor's drift, where it is one; then position
-    /// and velocity at the start of each record.
+    /// Model coefficients shared by the records; then the sensor's drift, if it is fitted; then position and
+    /// velocity at the start of each record.
     unknowns: Vec<f64>,
     coefficients: usize,
     drift: bool,
-    /// Place of the inertia among the unknowns, where it is one.
+    /// Index of the inertia among the unknowns; `None` if it is not fitted.
     inertia: Option<usize>,
 }
 
@@ -126,17 +128,18 @@ impl<'a> Recalibration<'a> {
         Ok(left)
     }
 
-    /// By how much a step moves the phase at the end of a record, from what it does to stiffness and inertia.
+    /// Returns the phase change at the end of a record that a step causes through stiffness and inertia.
     fn phase_moved(&self, round: &Round) -> f64 {
         let nominal = &self.situation.nominal;
         let at = |place: usize| round.step.get(place).copied();
-        // What is no unknown does not move.
+        // A quantity that is not fitted does not change.
         let moved = |place: Option<usize>| place.and_then(at).unwrap_or_default();
         let relative = moved(Some(STIFFNESS)) / nominal.stiffness() - moved(self.inertia) / nominal.inertia();
         0.5 * relative.abs() * self.situation.omega() * self.situation.duration()
     }
 
-    /// The norm that the best unknowns leave over a part of each record; infinite where the fit does not settle.
+    /// Returns the norm that the best unknowns leave over a part of each record; infinite if the fit does not
+    /// converge.
     fn fit(&mut self, part: f64) -> Result<f64, TrialError> {
         let mut round = self.round(part)?;
         for _ in 0..ROUNDS {
@@ -152,7 +155,7 @@ impl<'a> Recalibration<'a> {
                 match self.round(part) {
                     Ok(next) if next.norm <= round.norm => break Some(next),
                     _ if share < 0.01 => break None,
-                    // Worse, or a motion that runs away: the step was too long.
+                    // The norm grew or the motion diverged: the step was too long.
                     _ => share *= 0.25,
                 }
             };
@@ -169,7 +172,7 @@ impl<'a> Recalibration<'a> {
         Ok(f64::INFINITY)
     }
 
-    /// Residual and step at the present unknowns, over a part of each record from its beginning.
+    /// Returns residual norm and step at the current unknowns, over a part of each record from its beginning.
     fn round(&mut self, part: f64) -> Result<Round, TrialError> {
         let count = self.unknowns.len();
         let mut normal = DMatrix::<f64>::zeros(count, count);
@@ -177,7 +180,7 @@ impl<'a> Recalibration<'a> {
         let unknowns = self.unknowns.clone();
         let (coefficients, rest) = unknowns.split_at(self.coefficients);
         let (drift, starts) = rest.split_at(usize::from(self.drift));
-        // A sensor whose drift is no unknown does not drift.
+        // A sensor whose drift is not fitted does not drift.
         let slope = drift.first().copied().unwrap_or_default();
         self.model.set(coefficients)?;
         let mut row: Vec<(usize, f64)> = Vec::with_capacity(count);
@@ -186,7 +189,8 @@ impl<'a> Recalibration<'a> {
         let mut response = Response::default();
         for (record, (seen, start)) in self.seen.iter().zip(starts.chunks_exact(2)).enumerate() {
             let &[position, velocity] = start else { continue };
-            // The first sample may bear a later stamp than its time: the motion starts at the first sample's time.
+            // The first sample's timestamp may be later than its time; the motion starts at the sample's
+            // time.
             let start_time = seen.times_s.iter().take(1).fold(0.0, |start: f64, time| start.min(*time));
             let used = (part * seen.values.len() as f64).ceil() as usize;
             let stamps = seen.stamps_s.iter().take(used).copied();
@@ -224,7 +228,7 @@ impl<'a> Recalibration<'a> {
         Ok(Round { norm: squares.sqrt(), expected, step })
     }
 
-    /// The input as the file tells it: its samples bear the stamps of the values beside them.
+    /// Returns the input as the file states it: its samples have the timestamps of the values beside them.
     fn input(&self, seen: &Samples<f64>) -> Result<Option<Input>, TrialError> {
         let Some(excitation) = self.situation.excitation else { return Ok(None) };
         let duration = self.situation.duration();
@@ -233,11 +237,11 @@ impl<'a> Recalibration<'a> {
     }
 }
 
-/// Added to the unit diagonal: a short part of a record may leave a combination of unknowns open, which then
-/// stays.
+/// Ridge added to the unit diagonal: a short part of a record may leave a combination of unknowns
+/// undetermined, which then keeps its value.
 const RIDGE: f64 = 1e-11;
 
-/// Solves normal equations of which the lower triangle is given, each unknown scaled to a unit diagonal.
+/// Solves normal equations given by their lower triangle, with each unknown scaled to a unit diagonal.
 fn solve(mut normal: DMatrix<f64>, mut gradient: DVector<f64>) -> Option<DVector<f64>> {
     let scale = normal.diagonal().map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 });
     for (index, entry) in normal.iter_mut().enumerate() {

@@ -20,7 +20,7 @@ fn another_oscillator_from_another_start_is_absorbed_even_after_turns_of_phase()
     for driven in [false, true] {
         let believed = situation(driven);
         let is = believed.nominal.coefficients();
-        // 5 % in stiffness are more than five radians after ten seconds.
+        // 5 % in stiffness shifts the phase by more than five radians after ten seconds.
         let other = Coefficients {
             inertia: if driven { 0.97 } else { 1.0 },
             damping: 1.3 * is.damping,

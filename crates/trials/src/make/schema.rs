@@ -1,12 +1,12 @@
-//! The configuration keys of trials.
+//! Configuration keys of trials.
 
 use settings::{Default, Field, Kind, Section};
 
-/// A field without unit and source, to be refined by struct update.
+/// Text field without unit and source; other fields refine it by struct update.
 const PLAIN: Field =
     Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
-/// Every section of a configuration of trials.
+/// All sections of a trial configuration.
 pub(crate) const SECTIONS: &[Section<'static>] = &[
     Section { name: "", fields: TOP },
     Section { name: "trials", fields: TRIALS },

@@ -1,4 +1,4 @@
-//! Everything that banks have in common: a system as it is looked at, and how large what is hidden there shows.
+//! Common parts of all banks: a system with its measurement, and the detectability of what is hidden in it.
 
 use super::error::TrialError;
 use super::job::Job;
@@ -16,25 +16,25 @@ use dynamics::{Active, Coordinate, Effect, Nominal};
 use seed::Seed;
 use simulator::nominal_text;
 
-/// How often a system and a shape are drawn anew where no size is as detectable as wanted.
+/// Number of draws of a system and a shape if no size reaches the wanted detectability.
 pub(crate) const ATTEMPTS: usize = 40;
 
-/// Everything that banks have in common.
+/// System, measurement and nuisances of a case.
 pub(crate) struct Setup {
-    /// The case's branch of the tree of seeds.
+    /// The case's branch of the seed tree.
     pub(crate) seed: Seed,
-    /// Its names, from the root.
+    /// Names along the path of the branch from the root.
     pub(crate) branch: Vec<String>,
     pub(crate) situation: Situation,
     pub(crate) nuisances: Nuisances,
-    /// Σθ̇² over all samples of all records, without anything hidden.
+    /// Σθ̇² over all samples of all records, without hidden effects.
     pub(crate) square_velocities: f64,
-    /// Standard deviation of all that is white, in rad: the unit of detectability.
+    /// Standard deviation of all white disturbances, in rad: the unit of detectability.
     pub(crate) white: f64,
 }
 
 impl Setup {
-    /// Draws a situation; a later attempt draws another, with the same nuisances.
+    /// Draws a situation; each attempt draws another one, with the same nuisances.
     pub(crate) fn draw(
         plan: &TrialPlan,
         job: Job,
@@ -48,7 +48,7 @@ impl Setup {
         Self::with(situation, seed, own, branch, hidden)
     }
 
-    /// A setup about a situation; `seed` is the case's and `own` the attempt's.
+    /// Builds the setup of a situation; `seed` is that of the case and `own` that of the attempt.
     pub(crate) fn with(
         situation: Situation,
         seed: Seed,
@@ -65,13 +65,13 @@ impl Setup {
         Ok(Self { seed: own, branch, situation, nuisances, square_velocities, white })
     }
 
-    /// The nuisances as effects of the measurement chain.
+    /// Returns the nuisances as effects of the measurement chain.
     pub(crate) fn nuisance_effects(&self) -> Result<Vec<Active>, TrialError> {
         let count = (self.situation.sampling.samples * self.situation.starts.len()) as f64;
         self.nuisances.active(&self.situation, self.square_velocities / count)
     }
 
-    /// The text of a `nominal.toml`; an encoder's step is stated there.
+    /// Returns the text of a `nominal.toml`, which states an encoder's step.
     pub(crate) fn nominal_toml(&self, nominal: Nominal) -> Result<String, TrialError> {
         let stated = match self.nuisances.encoder_step {
             Some(step) => nominal.with_sensor_resolution(step)?,
@@ -80,13 +80,13 @@ impl Setup {
         Ok(nominal_text(&stated))
     }
 
-    /// How detectable noise-free motions are, seen by an ideal sensor.
+    /// Returns the detectability of noise-free motions, observed by an ideal sensor.
     pub(crate) fn detectability(&self, motions: Vec<Motion>, absorbed: Absorbed) -> Result<f64, TrialError> {
         let seen: Vec<_> = motions.into_iter().map(Motion::seen).collect();
         Ok(left_over(&self.situation, &seen, absorbed)? / self.white)
     }
 
-    /// How detectable noise-free motions are that a sensor with distortions of its own sees.
+    /// Returns the detectability of noise-free motions, observed by a sensor with its own distortions.
     pub(crate) fn detectability_seen(
         &self,
         motions: &[Motion],
@@ -104,7 +104,7 @@ impl Setup {
         Ok(left_over(&self.situation, &seen, absorbed)? / self.white)
     }
 
-    /// A law as detectable as wanted beyond what is absorbed; `None` where no size is.
+    /// Returns a law with the wanted detectability beyond what is absorbed; `None` if no size reaches it.
     pub(crate) fn sized(
         &self,
         open: &OpenLaw,
@@ -123,7 +123,7 @@ impl Setup {
         }))
     }
 
-    /// An effect as detectable as wanted, alone; `None` where no size is.
+    /// Returns an effect alone with the wanted detectability; `None` if no size reaches it.
     pub(crate) fn hide(
         &self,
         effect: &TrialEffect,
@@ -159,7 +159,8 @@ impl Setup {
     }
 }
 
-/// What a recalibration moves beside hidden effects: not the rest angle where one of them does.
+/// Returns what a recalibration adjusts beside hidden effects: everything, except for the rest angle if one
+/// of them moves it.
 pub(crate) fn absorbed_beside<'a>(effects: impl IntoIterator<Item = &'a TrialEffect>) -> Absorbed {
     let moved = effects.into_iter().any(|effect| effect.moves_rest_angle);
     Absorbed { rest_angle: !moved, ..Absorbed::BY_RECALIBRATION }

@@ -1,4 +1,5 @@
-//! What every bank draws alike: the system, its start, its input, its sensor's noise, and what is believed of it.
+//! Situations, drawn in the same way in every bank: the system, its start, its input and its sensor's noise;
+//! also the nominal simulator.
 
 use super::draws::Draws;
 use super::error::TrialError;
@@ -9,7 +10,7 @@ use dynamics::{Active, Coefficients, Hold, Input, Nominal, Start, System};
 use seed::Seed;
 use truth::{Excitation, Sampling, Waveform};
 
-/// How the motions of a case come about.
+/// Type of the motions of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Motions {
     /// One release from rest.
@@ -20,24 +21,24 @@ pub(crate) enum Motions {
     Driven,
 }
 
-/// A system as it is but for what is hidden, and how it is looked at.
+/// True system, apart from what is hidden, and its measurement.
 #[derive(Debug, Clone)]
 pub(crate) struct Situation {
     /// The oscillator.
     pub(crate) nominal: Nominal,
-    /// The start of each record.
+    /// Initial state of each record.
     pub(crate) starts: Vec<Start>,
     /// Largest distance from the rest angle, in rad.
     pub(crate) amplitude: f64,
-    /// The input, for driven records.
+    /// Input of driven records; `None` for free motions.
     pub(crate) excitation: Option<Excitation>,
-    /// When samples are taken.
+    /// Sample rate, number of samples, and decimals of the files.
     pub(crate) sampling: Sampling,
     /// Standard deviation of the sensor's white noise, in rad.
     pub(crate) noise: f64,
 }
 
-/// A motion at the samples.
+/// Motion at the times of the samples.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Motion {
     pub(crate) times: Vec<f64>,
@@ -47,7 +48,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// As the measurement chain takes it.
+    /// Returns the motion in the form that the measurement chain takes.
     pub(crate) fn sampled(&self) -> SampledMotion<'_, f64> {
         SampledMotion {
             times_s: &self.times,
@@ -57,7 +58,7 @@ impl Motion {
         }
     }
 
-    /// What an ideal sensor with an ideal clock makes of it.
+    /// Returns the samples of an ideal sensor with an ideal clock.
     pub(crate) fn seen(self) -> Samples<f64> {
         Samples {
             indices: (0..self.times.len()).collect(),
@@ -69,7 +70,7 @@ impl Motion {
 }
 
 impl Situation {
-    /// Draws everything anew; what is hidden has no say in it.
+    /// Draws a situation, independently of what is hidden.
     pub(crate) fn draw(
         ranges: &Ranges,
         sampling: Sampling,
@@ -79,7 +80,7 @@ impl Situation {
         let mut draws = Draws::new(&seed.child("system"));
         let omega = std::f64::consts::TAU * draws.log_uniform(ranges.frequency_hz[0], ranges.frequency_hz[1]);
         let ratio = draws.log_uniform(ranges.damping_ratio[0], ranges.damping_ratio[1]);
-        // Half of the systems per unit of inertia, half in SI units, as small as the paper's pendulum.
+        // Half of the systems are per unit of inertia, half in SI units and as small as the paper's pendulum.
         let inertia = if draws.chance(0.5) { 1.0 } else { draws.log_uniform(2e-4, 1e-3) };
         let rest = draws.uniform(-0.05, 0.05);
         let nominal = Nominal::new(inertia, 2.0 * ratio * omega * inertia, omega * omega * inertia, rest)?;
@@ -102,14 +103,15 @@ impl Situation {
             Motions::Driven => {
                 situation.starts = vec![Start::release(rest)];
                 situation.excitation = Some(situation.drawn_excitation(&mut draws)?);
-                // No body waits exactly at its rest angle.
+                // No real body waits exactly at its rest angle.
                 situation.starts = vec![release(draws.uniform(0.005, 0.02) * amplitude)];
             }
         }
         Ok(situation)
     }
 
-    /// A chirp through the resonance or a square wave, as large as makes the swing the amplitude drawn.
+    /// Draws a chirp through the resonance or a square wave, scaled so that the swing has the drawn
+    /// amplitude.
     fn drawn_excitation(&self, draws: &mut Draws) -> Result<Excitation, TrialError> {
         let frequency = self.omega() / std::f64::consts::TAU;
         let unscaled = if draws.chance(0.5) {
@@ -129,10 +131,10 @@ impl Situation {
                 end_frequency_hz: frequency_hz,
             }
         };
-        // From rest the response of a linear oscillator is proportional to the input.
+        // From rest, the response of a linear oscillator is proportional to the input.
         let rest = self.nominal.rest_angle();
-        // A little off the rest angle, as below: an integrator that measures its error by the motion so far
-        // needs some.
+        // The start is slightly off the rest angle, as below: an integrator that scales its error tolerance
+        // by the motion so far needs some motion.
         let starts = vec![Start::release(rest + 1e-3 * self.amplitude)];
         let trial = Self { excitation: Some(unscaled), starts, ..self.clone() };
         let largest = trial
@@ -144,43 +146,43 @@ impl Situation {
         Ok(Excitation { amplitude: unscaled.amplitude * self.amplitude / largest, ..unscaled })
     }
 
-    /// Undamped angular frequency in rad/s.
+    /// Returns the undamped angular frequency in rad/s.
     pub(crate) fn omega(&self) -> f64 {
         self.nominal.angular_frequency()
     }
 
-    /// Torque of the spring at the largest swing.
+    /// Returns the torque of the spring at the largest swing.
     pub(crate) fn largest_torque(&self) -> f64 {
         self.nominal.stiffness() * self.amplitude
     }
 
-    /// Velocity with which the largest swing passes the rest angle, in rad/s.
+    /// Returns the velocity at which the largest swing passes the rest angle, in rad/s.
     pub(crate) fn largest_speed(&self) -> f64 {
         self.omega() * self.amplitude
     }
 
-    /// Amplitude of the input; without one 0, as nothing drives the system.
+    /// Returns the amplitude of the input; 0 without an input.
     pub(crate) fn largest_input(&self) -> f64 {
-        // No input is one of no size.
+        // A missing input acts like one of amplitude 0.
         self.excitation.map_or(0.0, |excitation| excitation.amplitude)
     }
 
-    /// The side of the rest angle, 1 or −1, away from where the first record starts.
+    /// Returns the side of the rest angle, 1 or −1, opposite to the start of the first record.
     pub(crate) fn far_side(&self) -> f64 {
         self.starts.first().map_or(1.0, |start| -(start.position - self.nominal.rest_angle()).signum())
     }
 
-    /// True sampling times in seconds.
+    /// Returns the true sampling times in seconds.
     pub(crate) fn times(&self) -> Vec<f64> {
         (0..self.sampling.samples).map(|index| index as f64 / self.sampling.rate_hz).collect()
     }
 
-    /// Length of a record in seconds.
+    /// Returns the length of a record in seconds.
     pub(crate) fn duration(&self) -> f64 {
         self.sampling.samples.saturating_sub(1) as f64 / self.sampling.rate_hz
     }
 
-    /// The input at the samples, held in between.
+    /// Returns the input at the samples, held in between; `None` for free motions.
     pub(crate) fn input(&self) -> Result<Option<Input>, TrialError> {
         let Some(excitation) = self.excitation else { return Ok(None) };
         let (times, duration) = (self.times(), self.duration());
@@ -188,7 +190,7 @@ impl Situation {
         Ok(Some(Input::new(times, values, Hold::Zero)?))
     }
 
-    /// The motion of each record with effects of the vocabulary.
+    /// Simulates the motion of each record with effects of the vocabulary.
     pub(crate) fn motions(&self, effects: &[Active]) -> Result<Vec<Motion>, TrialError> {
         let system = System::new(self.nominal, effects.to_vec())?;
         let settings = Settings { velocity: true, acceleration: true, ..Settings::default() };
@@ -209,10 +211,10 @@ impl Situation {
     }
 }
 
-/// What is believed of the oscillator, whatever is hidden: exact, or with damping and stiffness off by up to
-/// a part.
+/// Returns the nominal oscillator: exact, or with damping and stiffness wrong by up to the relative error
+/// `off`. It does not depend on what is hidden.
 ///
-/// 30 % off in stiffness is 14 to 20 % in frequency: within a factor of 2 by far.
+/// An error of 30 % in stiffness is 14 to 20 % in frequency, far within a factor of 2.
 pub(crate) fn believed(nominal: &Nominal, off: Option<f64>, seed: &Seed) -> Result<Nominal, TrialError> {
     let Some(off) = off else { return Ok(*nominal) };
     let mut draws = Draws::new(&seed.child("belief"));

@@ -1,23 +1,24 @@
-//! Finding the size of an effect from how detectable it is to be.
+//! Search for the size of an effect with a wanted detectability.
 
 use super::error::TrialError;
 
-/// How close the detectability found is to the one wanted, relatively.
+/// Relative difference from the wanted detectability that is accepted.
 pub(crate) const CLOSE: f64 = 0.01;
 
-/// Most trial sizes. The detectability is nearly a power of the size, and four are enough for most.
+/// Largest number of trial sizes. The detectability is nearly a power of the size, and four trials are
+/// usually enough.
 const ROUNDS: usize = 24;
 
-/// A size and how detectable it is.
+/// Size and its detectability.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sized {
     pub(crate) size: f64,
     pub(crate) detectability: f64,
 }
 
-/// The size at which `detectability` is as wanted, by the secant rule on the logarithms of both; a bracket,
-/// once there is one, is kept by bisection. `None` where no size up to `most` is enough, or no size is
-/// close.
+/// Finds the size at which `detectability` is as wanted, by the secant rule on the logarithms of both; once
+/// there is a bracket, bisection keeps the search within it. `None` if no size up to `most` is large enough,
+/// or no size comes close.
 pub(crate) fn solve(
     wanted: f64,
     guess: f64,
@@ -48,7 +49,7 @@ pub(crate) fn solve(
         let slope = before.map_or(1.0, |(place, other)| (miss - other) / (at - place));
         before = Some((at, miss));
         let slope = if slope.is_finite() { slope.clamp(0.4, 4.0) } else { 1.0 };
-        // Far from the answer a power law is no more than a direction.
+        // Far from the answer, a power law gives only a direction.
         let mut next = (at - (miss / slope).clamp(-7.0, 7.0)).min(top);
         if let (Some(low), Some(high)) = (below, above) {
             let inside =

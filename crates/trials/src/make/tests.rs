@@ -29,7 +29,7 @@ const BANKS: &[&str] = &[
     "composite",
 ];
 
-/// Short records, so that a test makes many.
+/// Plans trials of short records, so that a test can make many.
 fn plan(counts: &[(&str, usize)], overrides: &[&str]) -> TrialPlan {
     let mut document = Document::parse("test.toml", "").unwrap();
     let short = ["record.seconds=6", "record.rate_hz=120", "system.lowest_frequency_hz=2"];
@@ -45,7 +45,7 @@ fn all_banks(count: usize, overrides: &[&str]) -> TrialPlan {
     plan(&BANKS.iter().map(|bank| (*bank, count)).collect::<Vec<_>>(), overrides)
 }
 
-/// What trials know of a case's hidden effects.
+/// Returns the trial properties of a case's hidden effects.
 fn effects(hidden: &Hidden) -> Vec<&'static TrialEffect> {
     hidden.effects.iter().map(|effect| find(&effect.id).unwrap()).collect()
 }
@@ -96,7 +96,7 @@ fn a_case_depends_on_seed_bank_and_number_alone() {
 #[test]
 fn nothing_outside_the_truth_tells_the_bank() {
     let plan = all_banks(200, &[]);
-    // Numbers: the mean of a bank's share of the shuffled numbers is normal with a known deviation.
+    // Numbers: the mean of a bank's shuffled numbers is normal with a known standard deviation.
     let cases = plan.len() as f64;
     for job in [Bank::None, Bank::Calibration, Bank::Single, Bank::Pair, Bank::LeftOut, Bank::Foreign] {
         let own: Vec<f64> = (0..plan.len())
@@ -107,7 +107,7 @@ fn nothing_outside_the_truth_tells_the_bank() {
         let deviation = cases / 12.0_f64.sqrt() / (own.len() as f64).sqrt();
         assert!((mean - 0.5 * (cases - 1.0)).abs() < 4.0 * deviation, "{job:?} {mean}");
     }
-    // Texts: but for numbers and an input's column every case's files have the same lines.
+    // Texts: except for numbers and an input column, the files of all cases have the same lines.
     let plan = all_banks(2, &[]);
     let mut headers = std::collections::BTreeSet::new();
     let mut keys = std::collections::BTreeSet::new();
@@ -126,7 +126,7 @@ fn nothing_outside_the_truth_tells_the_bank() {
     assert_eq!(keys.iter().filter(|key| !key.starts_with('#')).collect::<Vec<_>>(), known);
 }
 
-/// Pearson's test of homogeneity over banks, and that what is drawn is what the records get.
+/// Pearson's test of homogeneity over banks; also checks that records get what is drawn.
 #[test]
 fn nuisances_are_alike_in_every_bank() {
     let banks = [Bank::None, Bank::Calibration, Bank::Single, Bank::Pair, Bank::Foreign, Bank::Stressed];
@@ -163,8 +163,8 @@ fn nuisances_are_alike_in_every_bank() {
     }
 }
 
-/// Detectability by another way: motions of the reference integrator, their derivatives by differences, and
-/// a projection by singular values.
+/// Checks the detectability by an independent computation: motions of the reference integrator, derivatives
+/// by finite differences, and a projection by singular values.
 #[test]
 fn sizes_are_as_detectable_as_wanted() {
     let plan = plan(&[("single", 26), ("releases", 14)], &["trials.detectabilities=[6]"]);
@@ -195,7 +195,7 @@ fn sizes_are_as_detectable_as_wanted() {
     assert!(checked > 20, "{checked}");
 }
 
-/// What recalibration and the other one of a pair together leave of it: the size of the first alone.
+/// Checks the part of one effect of a pair that neither recalibration nor the other effect absorbs.
 #[test]
 fn each_of_a_pair_is_as_detectable_as_wanted_beyond_the_other() {
     let plan = plan(&[("pair", 54)], &["trials.detectabilities=[12]"]);
@@ -226,14 +226,15 @@ fn each_of_a_pair_is_as_detectable_as_wanted_beyond_the_other() {
         let motions = setup.situation.motions(truth.system.effects()).unwrap();
         let absorbed = Absorbed { stand_ins: stand_in, ..Absorbed::BY_RECALIBRATION };
         let found = setup.detectability(motions, absorbed).unwrap();
-        // The larger the sizes, the less linear; a factor of two would be two effects that cancel.
+        // The larger the sizes, the less linear the problem; an error of a factor of two would mean that the
+        // effects cancel.
         assert!((found / 12.0 - 1.0).abs() < 0.2, "{:?} {found}", hidden.effects);
         checked += 1;
     }
     assert!(checked > 5, "{checked}");
 }
 
-/// ‖P·Δ‖ of a case with effects in the system.
+/// Returns ‖P·Δ‖ of a case with effects in the system.
 fn projected(hidden: &Hidden, rest_angle: bool) -> f64 {
     let truth = &hidden.records[0];
     let times: Vec<f64> =
@@ -248,7 +249,7 @@ fn projected(hidden: &Hidden, rest_angle: bool) -> f64 {
     let nominal = *truth.system.nominal();
     let plain = |nominal: Nominal| System::new(nominal, Vec::new()).unwrap();
     let mut added = of(&truth.system, &starts) - of(&plain(nominal), &starts);
-    // Iterated, as a size that moves the frequency is not small in the phase.
+    // The projection is iterated, because an effect that changes the frequency causes a large phase change.
     let mut at = nominal.coefficients();
     let mut begin = starts;
     for _ in 0..4 {
@@ -331,7 +332,7 @@ fn an_effect_is_laid_under_a_residual() {
         assert_eq!(case.hidden.nuisances, ["timestamp_batching"]);
         let (record, _) = read_text("record", case.records[0].as_bytes(), &ReadOptions::default()).unwrap();
         assert_eq!(record.len(), 900);
-        // Without the motion the residual is left, up to its rounding.
+        // Without the motion, the residual remains, up to its rounding.
         let truth = &case.hidden.records[0];
         if truth.chain.effects().count() == 0 {
             let times: Vec<f64> = (0..900).map(|index| f64::from(index) / truth.sampling.rate_hz).collect();
@@ -348,7 +349,7 @@ fn an_effect_is_laid_under_a_residual() {
 fn cases_of_a_physics_engine_are_written_like_every_other() {
     let folder = format!("trials.engine={}", fixture("engine"));
     let plan = plan(&[("engine_cases", 5), ("none", 1)], &[&folder]);
-    // As many as there are.
+    // As many cases as the folder holds.
     assert_eq!((plan.len(), plan.left_out_banks()), (2, &[][..]));
     let cases: Vec<_> = (0..2).map(|index| plan.case(index).unwrap()).collect();
     let [engine] = cases.iter().filter(|case| case.hidden.bank == Bank::Engine).collect::<Vec<_>>()[..]
@@ -381,7 +382,7 @@ fn configurations_as_shipped_hide_everything_at_every_size() {
     assert!((90..=120).contains(&quick.len()), "{}", quick.len());
 }
 
-/// `cargo test --release -p trials how_long -- --ignored --nocapture`
+/// Run with `cargo test --release -p trials how_long -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes without optimization"]
 fn how_long_a_hundred_cases_take() {

@@ -1,4 +1,4 @@
-//! Accuracy by bank, by effect and by size; what was mistaken for what.
+//! Accuracy by bank, effect and size, and confusion tables.
 
 use super::judgment::{BANKS, Judgment, KINDS, Said};
 use super::statistics::proportion;
@@ -6,26 +6,26 @@ use crate::hidden::{Asked, Bank};
 use results::{BankRow, Confusion, NuisanceRow, Proportion, SizeRow};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Sizes in noise units that stand for ranges; a range reaches to the geometric mean with the next.
+/// Representative sizes in noise units; each one's range extends to the geometric mean with its neighbors.
 pub(crate) const SIZES: [f64; 9] = [3.0, 6.0, 12.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
 
-/// The range of sizes that one stands for.
+/// Returns the range of sizes that the size with an index represents.
 pub(crate) fn range(index: usize) -> [f64; 2] {
     let at = |index: usize| SIZES.get(index).copied();
     let middle = |one: Option<f64>, other: Option<f64>| Some((one? * other?).sqrt());
     [
-        // The first stands for whatever is smaller.
+        // The first range includes all smaller sizes.
         index.checked_sub(1).and_then(|below| middle(at(below), at(index))).unwrap_or(0.0),
         middle(at(index), at(index + 1)).unwrap_or(f64::INFINITY),
     ]
 }
 
-/// Whether a size lies in a range.
+/// Returns `true` if a size lies in a range.
 pub(crate) fn within(size: f64, [low, high]: [f64; 2]) -> bool {
     size >= low && size < high
 }
 
-/// Accuracy by bank; banks without cases are left out.
+/// Returns the accuracy by bank; banks without cases are left out.
 pub(crate) fn banks(judged: &[Judgment<'_>]) -> Vec<BankRow> {
     BANKS
         .into_iter()
@@ -48,7 +48,7 @@ pub(crate) fn banks(judged: &[Judgment<'_>]) -> Vec<BankRow> {
         .collect()
 }
 
-/// Accuracy by bank, first hidden effect and size, or by bank and size where effects are not told apart.
+/// Returns the accuracy by bank, first hidden effect and size, or by bank and size if `by_effect` is `false`.
 pub(crate) fn sizes(judged: &[Judgment<'_>], by_effect: bool) -> Vec<SizeRow> {
     let mut groups: BTreeMap<(Bank, &str, usize), Vec<&Judgment<'_>>> = BTreeMap::new();
     for judgment in judged {
@@ -59,7 +59,7 @@ pub(crate) fn sizes(judged: &[Judgment<'_>], by_effect: bool) -> Vec<SizeRow> {
         let effect = match (by_effect, hidden.effects.first()) {
             (false, _) => "",
             (true, Some(first)) => first.id.as_str(),
-            // Where nothing acts the group has no name.
+            // If nothing acts, the group has an empty name.
             (true, None) => foreign.unwrap_or_default(),
         };
         groups.entry((judgment.bank(), effect, index)).or_default().push(judgment);
@@ -94,7 +94,7 @@ fn table(rows: Vec<String>, columns: Vec<String>, pairs: &[(String, String)]) ->
     Confusion { hidden: rows, said: columns, counts }
 }
 
-/// Hidden effect against the first name, of cases with at most one effect.
+/// Tabulates hidden effects against first names, over cases with at most one effect.
 pub(crate) fn confusion(judged: &[Judgment<'_>]) -> Confusion {
     let said = |judgment: &Judgment<'_>| match (judgment.said, judgment.named.first()) {
         (Said::Effect, Some(first)) => (*first).to_owned(),
@@ -121,7 +121,7 @@ pub(crate) fn confusion(judged: &[Judgment<'_>]) -> Confusion {
     table(rows, columns, &pairs)
 }
 
-/// Hidden kind against the kind of the answer.
+/// Tabulates hidden kinds against kinds of answers.
 pub(crate) fn kinds(judged: &[Judgment<'_>]) -> Confusion {
     let pairs: Vec<(String, String)> = judged
         .iter()
@@ -134,7 +134,8 @@ pub(crate) fn kinds(judged: &[Judgment<'_>]) -> Confusion {
     table(order(|pair| &pair.0), order(|pair| &pair.1), &pairs)
 }
 
-/// Kind of verdict right: among cases whose effects have about a size, and those without an effect.
+/// Returns the share of right kinds of verdict among cases with effects in a range of sizes and cases without
+/// an effect.
 pub(crate) fn kind_right(judged: &[Judgment<'_>], sizes: [f64; 2]) -> Proportion {
     let counted = judged.iter().filter(|judgment| {
         judgment.asked() != Asked::Unknown
@@ -143,7 +144,7 @@ pub(crate) fn kind_right(judged: &[Judgment<'_>], sizes: [f64; 2]) -> Proportion
     proportion(counted.map(Judgment::kind_is_right))
 }
 
-/// How often each nuisance was named.
+/// Returns how often each nuisance was named.
 pub(crate) fn nuisances(judged: &[Judgment<'_>]) -> Vec<NuisanceRow> {
     let ids: BTreeSet<&String> = judged.iter().flat_map(|judgment| &judgment.case.hidden.nuisances).collect();
     let row = |id: &String| {

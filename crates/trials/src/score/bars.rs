@@ -1,4 +1,4 @@
-//! The bars, and what was measured against them.
+//! Bars: values that scores have to reach, and the measured values.
 
 use super::accuracy::{kind_right, range, within};
 use super::judgment::Judgment;
@@ -7,7 +7,7 @@ use crate::effects::{SEPARABLE_OTHERWISE, find};
 use crate::hidden::{Asked, Bank};
 use results::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
 
-/// Size at which an effect is separable with so many records.
+/// Returns the size at which an effect is separable with a number of records.
 fn separable(effect: &str, records: usize) -> f64 {
     let [one, two, three] = find(effect).map_or(SEPARABLE_OTHERWISE, |effect| effect.separable);
     match records {
@@ -17,7 +17,7 @@ fn separable(effect: &str, records: usize) -> f64 {
     }
 }
 
-/// What the other tables hold.
+/// Results of the other tables that bars need.
 pub(crate) struct Measured<'a> {
     pub(crate) judged: &'a [Judgment<'a>],
     pub(crate) reliability: &'a [Reliability],
@@ -27,7 +27,7 @@ pub(crate) struct Measured<'a> {
     pub(crate) seconds: &'a Quantiles,
 }
 
-/// On which side of a value a measure should lie.
+/// Side of a value on which a measure should lie.
 pub(crate) enum Side {
     AtLeast(f64),
     AtMost(f64),
@@ -67,7 +67,7 @@ pub(crate) fn share(metric: &str, side: Side, found: &Proportion) -> BarRow {
     row(metric, "%", side, found_with, found.of)
 }
 
-/// The bars in the order of their document.
+/// Returns the bars in the order of their document.
 pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
     use Side::{AtLeast, AtMost, Within};
     let judged = measured.judged;
@@ -75,7 +75,7 @@ pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
     let at = |bank: Bank, size: [f64; 2]| {
         judged.iter().filter(move |judgment| judgment.bank() == bank && within(judgment.size(), size))
     };
-    // Places in SIZES.
+    // Indices into SIZES.
     let [twelve, twenty_five, hundred] = [2, 3, 5].map(about);
     let alarms = judged.iter().filter(|judgment| judgment.asked() == Asked::Nothing).map(Judgment::alarms);
     let far = judged
@@ -92,7 +92,7 @@ pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
         let found = measured.reliability.iter().find(|row| row.subject == "confidence" && row.banks == banks);
         let (error, count) = found.map_or((NO_NUMBER, 0), |row| (row.calibration_error, row.count));
         let mut row = row(metric, "", AtMost(bar), error, count);
-        // What scatter alone makes of it is no miss.
+        // A miss that scatter alone would cause does not count.
         let chance = found.map_or(f64::NAN, |row| row.calibration_error_by_chance);
         row.missed_beyond_chance = error.interval_95[0] - chance > bar;
         row

@@ -1,4 +1,5 @@
-//! Scores by effect and by class where several effects act: what is named of what acts, and whether probabilities hold.
+//! Scores by effect and by class for cases with several effects: recall, precision, and calibration of
+//! probabilities.
 
 use super::judgment::{Judgment, Said};
 use super::reliability::Statements;
@@ -7,22 +8,23 @@ use crate::effects::{EffectClass, REGISTRY, TrialEffect, class_of};
 use crate::hidden::{Asked, Bank, HiddenEffect};
 use results::{ClassScores, DiagnosisResult, InclusionRow, Proportion, RecallRow};
 
-/// Ranges of sizes, × noise, whose recall is stated; the last has no end.
+/// Endpoints of the ranges of sizes, × noise, with a stated recall; the last range has no upper end.
 const FLOORS: [f64; 5] = [1.0, 4.0, 10.0, 30.0, f64::INFINITY];
 
-/// Probability from which on an answer is sure.
+/// Probability from which an answer counts as sure.
 const SURE: f64 = 0.9;
 
 /// Probability below which an answer does not list an effect.
 const LISTED: f64 = 0.01;
 
-/// Probability of a class: the sum of those of its effects, at most 1, nuisances struck.
+/// Returns the probability of a class: the sum over its effects without nuisances, at most 1.
 fn probability(answer: &DiagnosisResult, class: &str, nuisances: &[String]) -> f64 {
     let own = answer.effects.iter().filter(|row| class_of(&row.id) == class && !nuisances.contains(&row.id));
     own.map(|row| row.probability).sum::<f64>().min(1.0)
 }
 
-/// Returns whether a class can be said to act or not: not where a nuisance or a law outside the vocabulary is of it.
+/// Returns `true` if an answer about a class counts neither for nor against, because a nuisance or a law
+/// outside the vocabulary belongs to it.
 fn is_open(judgment: &Judgment<'_>, class: &str) -> bool {
     let hidden = &judgment.case.hidden;
     hidden.nuisances.iter().any(|id| class_of(id) == class)
@@ -34,7 +36,7 @@ fn acts(judgment: &Judgment<'_>, class: &str) -> bool {
     judgment.case.hidden.effects.iter().any(|effect| class_of(&effect.id) == class)
 }
 
-/// What an answer names; nothing where its status is not `effect`.
+/// Returns the effects that an answer names; none if its status is not `effect`.
 fn named<'a>(judgment: &'a Judgment<'_>) -> &'a [&'a str] {
     if judgment.said == Said::Effect { &judgment.named } else { &[] }
 }
@@ -43,7 +45,7 @@ fn names_class(judgment: &Judgment<'_>, class: &str) -> bool {
     named(judgment).iter().any(|id| class_of(id) == class)
 }
 
-/// Stated probabilities of classes, as far as listed, and whether the classes act.
+/// Returns the listed probabilities of classes, each with `true` if the class acts.
 pub(crate) fn statements<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> Statements {
     judged
         .filter_map(|judgment| {
@@ -58,7 +60,7 @@ pub(crate) fn statements<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> 
         .collect()
 }
 
-/// Groups of cases that are scored by class, with the word for each.
+/// Returns the groups of cases that are scored by class, each with its name.
 pub(crate) fn groups<'a, 'b>(judged: &'b [Judgment<'a>]) -> Vec<(&'static str, Vec<&'b Judgment<'a>>)> {
     let of = |wanted: fn(&Judgment<'_>) -> bool| judged.iter().filter(|judgment| wanted(judgment)).collect();
     let groups: [(&str, Vec<&Judgment<'_>>); 4] = [
@@ -78,33 +80,33 @@ pub(crate) fn groups<'a, 'b>(judged: &'b [Judgment<'a>]) -> Vec<(&'static str, V
     groups.into_iter().filter(|(_, own)| !own.is_empty()).collect()
 }
 
-/// Whether effects act beside laws that nobody listed.
+/// Returns `true` if effects act together with laws outside the vocabulary.
 pub(crate) fn is_composite(judgment: &Judgment<'_>) -> bool {
     let hidden = &judgment.case.hidden;
     !hidden.effects.is_empty() && !hidden.unlisted.is_empty()
 }
 
-/// The leading effect of each case that has one.
+/// Returns the leading effect of each case that has one.
 fn leading<'a>(judged: &[&'a Judgment<'a>]) -> impl Iterator<Item = (&'a Judgment<'a>, &'a HiddenEffect)> {
     judged.iter().filter_map(|judgment| Some((*judgment, judgment.case.hidden.effects.first()?)))
 }
 
-/// Whether the leading effect's class is named, by case.
+/// Returns the share of cases in which the leading effect's class is named.
 pub(crate) fn leading_named<'a>(judged: &[&'a Judgment<'a>]) -> Proportion {
     proportion(leading(judged).map(|(judgment, effect)| names_class(judgment, class_of(&effect.id))))
 }
 
-/// Whether the leading effect's class gets a probability of 0.9 or more, by case.
+/// Returns the share of cases in which the leading effect's class gets a probability of 0.9 or more.
 pub(crate) fn leading_sure<'a>(judged: &[&'a Judgment<'a>]) -> Proportion {
     proportion(leading(judged).map(|(judgment, effect)| stated(judgment, class_of(&effect.id)) >= SURE))
 }
 
 fn stated(judgment: &Judgment<'_>, class: &str) -> f64 {
-    // A case without an answer states nothing.
+    // A case without an answer states no probability.
     judgment.answer().map_or(0.0, |answer| probability(answer, class, &judgment.case.hidden.nuisances))
 }
 
-/// Hidden effects of a range of sizes whose class is named.
+/// Returns the share of hidden effects in a range of sizes whose class is named.
 pub(crate) fn recall(judged: &[&Judgment<'_>], [low, high]: [f64; 2]) -> Proportion {
     let within = |effect: &&HiddenEffect| effect.floors.is_some_and(|floors| floors >= low && floors < high);
     proportion(judged.iter().flat_map(|judgment| {
@@ -113,7 +115,7 @@ pub(crate) fn recall(judged: &[&Judgment<'_>], [low, high]: [f64; 2]) -> Proport
     }))
 }
 
-/// Names whose class acts.
+/// Returns the share of names whose class acts.
 pub(crate) fn precision(judged: &[&Judgment<'_>]) -> Proportion {
     proportion(judged.iter().flat_map(|judgment| {
         let is_so = |id: &&str| acts(judgment, class_of(id)) || is_open(judgment, class_of(id));
@@ -121,18 +123,21 @@ pub(crate) fn precision(judged: &[&Judgment<'_>]) -> Proportion {
     }))
 }
 
-/// `unknown`, or a class that the truth allows, where what acts has no name.
+/// Returns the share of right answers (`unknown`, or a class that the truth allows) among cases of a law
+/// outside the vocabulary.
 pub(crate) fn unknown<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> Proportion {
     let foreign = judged.filter(|judgment| judgment.case.hidden.foreign.is_some());
     proportion(foreign.map(|judgment| judgment.right))
 }
 
-/// Something named, or `unknown`, where nothing is missing.
+/// Returns the share of answers that name something or say `unknown`, among cases in which nothing is
+/// missing.
 pub(crate) fn false_alarms<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> Proportion {
     proportion(judged.filter(|judgment| judgment.asked() == Asked::Nothing).map(Judgment::alarms))
 }
 
-/// Part of the gap that the answer attributes to classes that act, of what it attributes to any.
+/// Returns the share of the gap attributed to classes that act, relative to the total attributed share;
+/// `None` if nothing is attributed.
 fn attributed(judgment: &Judgment<'_>) -> Option<f64> {
     let share = |id: &str| {
         let rows = &judgment.answer()?.effects;
@@ -146,14 +151,15 @@ fn attributed(judgment: &Judgment<'_>) -> Option<f64> {
     (all > 0.0).then(|| right.map(|(_, share)| share).sum::<f64>() / all)
 }
 
-/// How an effect or a class fares over cases; `None` where it neither acts nor is named.
+/// Returns recall, precision and mean probabilities of an effect or a class over cases; `None` if it neither
+/// acts nor is named.
 fn inclusion(id: &str, judged: &[&Judgment<'_>], is_class: bool) -> Option<InclusionRow> {
     let key = |own: &str| if is_class { class_of(own) == id } else { own == id };
     let class = class_of(id);
     let acts = |judgment: &Judgment<'_>| judgment.case.hidden.effects.iter().any(|effect| key(&effect.id));
     let is_named = |judgment: &Judgment<'_>| named(judgment).iter().any(|own| key(own));
     let stated = |judgment: &Judgment<'_>| {
-        // As of a class: without an answer nothing is stated.
+        // As for a class: without an answer no probability is stated.
         if is_class { stated(judgment, id) } else { judgment.probability(id).unwrap_or_default() }
     };
     let counted: Vec<&Judgment<'_>> =
@@ -179,7 +185,7 @@ fn inclusion(id: &str, judged: &[&Judgment<'_>], is_class: bool) -> Option<Inclu
     })
 }
 
-/// Scores of every group.
+/// Returns the scores of every group.
 pub(crate) fn study(judged: &[Judgment<'_>]) -> Vec<ClassScores> {
     groups(judged).into_iter().map(|(banks, own)| scores(banks, &own)).collect()
 }

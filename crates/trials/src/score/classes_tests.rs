@@ -1,4 +1,4 @@
-//! Scores by class on answers whose scores can be counted by hand.
+//! Tests of scores by class, on answers that can be counted by hand.
 
 use super::AnsweredCase;
 use super::classes::{statements, study};
@@ -7,7 +7,8 @@ use super::sample::{answered, case};
 use crate::hidden::{Bank, Foreign, Unlisted};
 use results::{ClassScores, WithInterval};
 
-/// A composite case: effects with sizes × noise, and a law outside the vocabulary of a class.
+/// Builds a composite case: effects with their sizes × noise, and a law outside the vocabulary that belongs
+/// to a class.
 fn composite(hidden: &[(&str, f64)], class: Option<&str>, named: &[&str]) -> AnsweredCase {
     let ids: Vec<&str> = hidden.iter().map(|(id, _)| *id).collect();
     let mut case = case(Bank::Composite, &ids, answered("effect", named, 0.95));
@@ -34,7 +35,7 @@ fn recall_and_precision_go_by_class_and_size() {
     assert_eq!((group.leading_named.count, group.leading_sure.count, group.set.count), (1, 1, 0));
     let friction = group.classes.iter().find(|row| row.id == "friction").unwrap();
     assert_eq!((friction.recall.count, friction.stated_where_it_acts), (1, 0.95));
-    // As an effect it is another one.
+    // By effect, it is another effect.
     let coulomb = group.effects.iter().find(|row| row.id == "coulomb_friction").unwrap();
     assert_eq!((coulomb.recall.count, coulomb.stated_where_it_acts), (0, 0.0));
 }

@@ -1,4 +1,4 @@
-//! How far the answer's simulator closes the gap to the clean motion: what no noise disturbs.
+//! True closure: share of the gap to the noise-free motion that an answer's simulator removes.
 
 use super::judgment::Judgment;
 use super::statistics::proportion;
@@ -12,30 +12,32 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use truth::Truth;
 
-/// Periods in a segment with a start state of its own.
+/// Length in periods of a segment with its own initial state.
 const PERIODS: f64 = 6.0;
-/// Samples in a period that are compared: a swing holds no more than its harmonics.
+/// Number of compared samples per period: a swing contains only a few harmonics.
 const PER_PERIOD: f64 = 25.0;
-/// What a diagnosis states of a closure that is lower still: worse by the gap itself.
+/// Lower limit of a stated closure, which a diagnosis also applies: worse by the gap itself.
 const LOWEST: f64 = -1.0;
-/// Steps of the fit of a start state.
+/// Largest number of steps for fitting an initial state.
 const STEPS: usize = 40;
 
 const MEANS: &str = "1 − m²/m₀², m and m₀ the root mean square distances of the repaired and of the nominal simulator from the \
     motion without noise, start states fitted in segments of six periods; at least −1";
 
-/// Closure of an answer's repaired simulator on the clean motion: 1 − m²/m₀², where m and m₀ are the root mean square
-/// distances of the repaired and of the nominal simulator from the motion that generated the records, start states
-/// (hidden ones too) fitted in segments of six periods.
+/// Returns the closure of an answer's repaired simulator on the noise-free motion: 1 − m²/m₀², where m and m₀
+/// are the root mean square distances of the repaired and of the nominal simulator from the motion that
+/// generated the records. Initial states (including hidden states) are fitted in segments of six periods.
 ///
-/// `nominal` is the simulator that the diagnosis was given. The repaired one has the answer's coefficients, and the
-/// effects that its gap was computed with.
+/// `nominal` is the simulator that the diagnosis was given. The repaired simulator has the answer's
+/// coefficients and the effects that the answer's gap was computed with.
 ///
 /// # Errors
-/// In words, why there is no such number: measured residuals, hidden or named effects in the measurement chain, no spring, no gap to close, a
-/// law outside the vocabulary, or a coefficient outside its range.
+/// A text with the reason why there is no such number: measured residuals, hidden or named effects in the
+/// measurement chain, no spring, no gap to close, a law outside the vocabulary, or a coefficient outside its
+/// range.
 pub fn true_closure(hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult) -> Result<f64, String> {
-    // What the simulator of a measured record leaves is motion too, and belongs to the gap that the diagnosis sees.
+    // The residual of a measured record also contains motion, which belongs to the gap that the diagnosis
+    // sees.
     if hidden.bank == Bank::Measured {
         return Err("measured residuals hold motion that nobody knows".to_owned());
     }
@@ -54,14 +56,14 @@ pub fn true_closure(hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult
         before += clean.misfit(&given)?;
         after += clean.misfit(&repaired)?;
     }
-    // Both simulators fit to the integrator's accuracy: nothing to close.
+    // Both simulators fit to the accuracy of the integrator: there is nothing to close.
     if before <= 1e-12 * (1.0 + after) {
         return Err("there is no gap to close".to_owned());
     }
     Ok(1.0 - after / before)
 }
 
-/// The simulator that an answer's gap was computed with.
+/// Builds the simulator that an answer's gap was computed with.
 fn repaired(nominal: &Nominal, answer: &DiagnosisResult) -> Result<System, String> {
     let value = |row: &CalibratedRow, own: f64| row.repaired.map_or(own, |found| found.value);
     let own = nominal.coefficients();
@@ -88,7 +90,7 @@ fn repaired(nominal: &Nominal, answer: &DiagnosisResult) -> Result<System, Strin
     System::new(nominal, effects).map_err(outside)
 }
 
-/// A clean motion in segments.
+/// Noise-free motion in segments.
 struct Clean {
     segments: Vec<Segment>,
     input: Option<Input>,
@@ -110,7 +112,7 @@ fn settings(observed: Observed) -> Settings {
     }
 }
 
-/// Values and their derivatives by the free quantities, row by row.
+/// Returns the observed values and their derivatives with respect to the free quantities, row by row.
 fn seen(response: &Response, observed: Observed) -> (&[f64], &[f64]) {
     match observed {
         Observed::Position => (&response.position, &response.position_sensitivity),
@@ -160,7 +162,7 @@ impl Clean {
         Ok(Self { segments, input, observed })
     }
 
-    /// Sum of squares of what a system misses, start states fitted.
+    /// Returns the sum of squares that a system leaves of the motion, with fitted initial states.
     fn misfit(&self, system: &System) -> Result<f64, String> {
         let hidden = system.hidden_states();
         let free: Vec<Free> = [Free::StartPosition, Free::StartVelocity]
@@ -178,10 +180,11 @@ impl Clean {
         Ok(sum)
     }
 
-    /// Squares left by the best start state: Levenberg–Marquardt from the clean motion's own.
+    /// Returns the sum of squares with the best initial state, by Levenberg–Marquardt from the initial state
+    /// of the noise-free motion.
     fn fitted(&self, model: &mut Model, segment: &Segment, hidden: usize) -> Result<f64, DynamicsError> {
         let first = segment.times.get(..1).unwrap_or(&segment.times);
-        // A system without hidden states has none that relax.
+        // A system without hidden states has none to relax.
         let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden.unwrap_or_default();
         let mut at = vec![segment.start.position, segment.start.velocity];
         at.extend(relaxed.into_iter().take(hidden));
@@ -224,7 +227,7 @@ impl Clean {
         at: &[f64],
     ) -> Result<(DVector<f64>, DMatrix<f64>), DynamicsError> {
         debug_assert!(at.len() >= 2);
-        // Position and velocity come first, as `fitted` puts them.
+        // Position and velocity come first, in the order set by `fitted`.
         let value = |index: usize| at.get(index).copied().unwrap_or_default();
         let mut states = [0.0; SYSTEM_HIDDEN];
         for (slot, value) in states.iter_mut().zip(at.iter().skip(2)) {
@@ -240,7 +243,7 @@ impl Clean {
     }
 }
 
-/// Coverage of the stated intervals.
+/// Returns the coverage of the stated closure intervals.
 pub(crate) fn study(judged: &[Judgment<'_>]) -> ClosureStudy {
     let mut left_out: BTreeMap<String, u64> = BTreeMap::new();
     let (mut held, mut below, mut above) = (Vec::new(), 0, 0);
@@ -273,7 +276,8 @@ mod tests {
         WithInterval { value, interval_95: [value, value] }
     }
 
-    /// A decay with effects that the nominal simulator lacks; its damping is believed 20 % too large.
+    /// Builds a decay with effects that the nominal simulator lacks and a nominal damping that is 20 % too
+    /// large.
     fn hidden(effects: &[(&str, &[f64])]) -> (Hidden, Nominal) {
         let nominal = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
         let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
@@ -335,7 +339,7 @@ mod tests {
         assert!(of(&[], None).abs() < 1e-12);
         let half = of(&[("coulomb_friction", &[("torque", 0.8)])], Some(0.32));
         assert!(0.0 < half && half < 1.0, "{half}");
-        // Far beyond the mark is worse than nothing.
+        // Overshooting far is worse than changing nothing.
         assert!(of(&[("coulomb_friction", &[("torque", 4.0)])], Some(0.3)) < 0.0);
     }
 

@@ -1,4 +1,4 @@
-//! What the scores of trials have to reach, as their configuration says.
+//! Gate: values that the scores of trials have to reach, from their configuration.
 
 use super::bars::{Side, row, share};
 use super::classes::{false_alarms, is_composite, leading_named, leading_sure, precision, recall, unknown};
@@ -9,8 +9,8 @@ use results::{BarRow, Reliability, TrialsResult};
 use serde::Deserialize;
 use settings::{Document, Resolved, SettingsError};
 
-/// Least and largest values of scores, the keys of a configuration's section `gate`, each from 0 to 1: `false_alarms` and
-/// `calibration_error` are at most what is stated, the others at least. Those that are absent are not asked for.
+/// Limits of scores: the keys of a configuration's section `gate`, each from 0 to 1. `false_alarms` and
+/// `calibration_error` are upper limits, the others lower limits. Absent keys set no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub struct Gate {
     leading_named: Option<f64>,
@@ -23,20 +23,20 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// The gate of a configuration of trials.
+    /// Reads the gate of a trial configuration.
     ///
     /// # Errors
-    /// [`SettingsError`], with file, line and column, where the document is none of trials.
+    /// [`SettingsError`], with file, line and column, if the document is no trial configuration.
     pub fn of(document: &Document) -> Result<Self, SettingsError> {
         Resolved::new(document, SECTIONS)?.section("gate")
     }
 }
 
-/// Size × noise from which on an effect beside others should be named.
+/// Size × noise from which an effect beside others should be named.
 const LARGE: f64 = 10.0;
 
 impl Gate {
-    /// The values asked for and what was measured, a row each.
+    /// Returns one row for each limit, with the measured score.
     pub(crate) fn rows(&self, judged: &[Judgment<'_>], reliability: &[Reliability]) -> Vec<BarRow> {
         let composite: Vec<&Judgment<'_>> = judged.iter().filter(|judgment| is_composite(judgment)).collect();
         let least = |name: &str, bar: Option<f64>, found| Some(share(name, Side::AtLeast(bar?), &found));
@@ -66,7 +66,7 @@ impl Gate {
     }
 }
 
-/// Returns whether some score of the gate is on the wrong side, be it by chance: the bank is fixed.
+/// Returns `true` if some score misses its limit. Chance is no excuse, because the bank is fixed.
 #[must_use]
 pub fn misses_the_gate(result: &TrialsResult) -> bool {
     result.gate.iter().any(|row| row.state == "not met")

@@ -1,12 +1,12 @@
-//! A rising map from stated to found probabilities.
+//! Monotonic map from stated to observed probabilities.
 
 use results::ProbabilityMap;
 
-/// Fewest cases that a map is fitted to: a block's mean scatters by 0.2 with fewer than six, and there is
-/// more than one.
+/// Smallest number of cases that a map is fitted to: the mean of a block with fewer than six cases scatters
+/// by 0.2, and there is more than one block.
 const FEWEST: usize = 20;
 
-/// A block that rises no further: sums of stated probabilities, of outcomes, and their count.
+/// Block of cases at the same level: sums of stated probabilities and of outcomes, and their count.
 #[derive(Debug, Clone, Copy)]
 struct Block {
     stated: f64,
@@ -20,8 +20,8 @@ impl Block {
     }
 }
 
-/// Least squares among maps that never fall, by pooling adjacent violators. A knot stands at the mean of a
-/// block's stated probabilities; a map of too few cases has none and changes nothing.
+/// Fits a nondecreasing map by least squares, pooling adjacent violators. Each knot lies at the mean of a
+/// block's stated probabilities. With too few cases, the map has no knots and changes nothing.
 ///
 /// # Reference
 /// M. Ayer, H. D. Brunk, G. M. Ewing, W. T. Reid, E. Silverman, Ann. Math. Statist. 26 (1955) 641–647.
@@ -36,7 +36,7 @@ pub(crate) fn fit(statements: &[(f64, bool)]) -> ProbabilityMap {
     let mut blocks: Vec<Block> = Vec::new();
     for (stated, so) in sorted {
         let mut block = Block { stated, found: f64::from(u8::from(so)), count: 1.0 };
-        // Equal statements belong together whatever their outcomes.
+        // Equal statements belong to one block whatever their outcomes.
         while let Some(last) = blocks.last().copied() {
             let same = last.stated / last.count == block.stated / block.count;
             if !same && last.level() < block.level() {
@@ -55,7 +55,7 @@ pub(crate) fn fit(statements: &[(f64, bool)]) -> ProbabilityMap {
     ProbabilityMap { method, knots, fitted_to }
 }
 
-/// What a map makes of a probability: linear between knots, constant beyond; without knots the same.
+/// Applies a map to a probability: linear between knots, constant beyond them, unchanged without knots.
 pub(crate) fn at(map: &ProbabilityMap, stated: f64) -> f64 {
     let (Some([first, low]), Some([last, high])) = (map.knots.first(), map.knots.last()) else {
         return stated;
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn violators_are_pooled() {
-        // Outcomes 0 1 0 1 1 pool to 0, ½, 1 (the textbook's example), five times over.
+        // Outcomes 0 1 0 1 1 are pooled to 0, ½, 1 (the textbook's example), five times over.
         let cases: Vec<(f64, bool)> = [(0.1, false), (0.2, true), (0.3, false), (0.4, true), (0.5, true)]
             .into_iter()
             .flat_map(|case| [case; 5])

@@ -1,27 +1,27 @@
-//! One answer beside one truth.
+//! Judgment of one answer against one truth.
 
 use crate::effects::class_of;
 use crate::hidden::{Asked, Bank, Hidden};
 use dynamics::{Class, Effect};
 use results::{DiagnosisResult, VerdictStatus};
 
-/// A case with its opened truth and what the diagnosis said of it.
+/// Case with its opened truth and the answer of the diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnsweredCase {
-    /// The case.
+    /// Identifier of the case.
     pub id: String,
     /// Hidden truth.
     pub hidden: Hidden,
-    /// The answer, or why there is none.
+    /// Answer, or the reason why there is none.
     pub answer: Result<DiagnosisResult, String>,
-    /// Closure of the answer's repaired simulator on the clean motion, from −1 to 1, or why there is none; see
-    /// [`true_closure`](crate::true_closure).
+    /// Closure of the answer's repaired simulator on the noise-free motion, from −1 to 1, or the reason why
+    /// there is none; see [`true_closure`](crate::true_closure).
     pub true_closure: Result<f64, String>,
-    /// Diagnoses this case alone again.
+    /// Command that diagnoses this case alone again.
     pub command: String,
 }
 
-/// What an answer says, nuisances struck.
+/// Status of an answer, with nuisances removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Said {
     None,
@@ -47,24 +47,24 @@ impl Said {
     }
 }
 
-/// An answer judged.
+/// Judged answer.
 #[derive(Debug, Clone)]
 pub(crate) struct Judgment<'a> {
     pub(crate) case: &'a AnsweredCase,
     pub(crate) said: Said,
-    /// What was named beside nuisances, best first.
+    /// Named effects without nuisances, best first.
     pub(crate) named: Vec<&'a str>,
-    /// Status and set right.
+    /// `true` if status and named set are right.
     pub(crate) right: bool,
     pub(crate) top_1: bool,
     pub(crate) class: bool,
-    /// Every hidden effect named.
+    /// `true` if every hidden effect is named.
     pub(crate) both: bool,
-    /// At least one of them named.
+    /// `true` if at least one hidden effect is named.
     pub(crate) either: bool,
 }
 
-/// Every bank, in the order of tables.
+/// All banks, in the order of tables.
 pub(crate) const BANKS: [Bank; 13] = [
     Bank::None,
     Bank::Calibration,
@@ -81,7 +81,7 @@ pub(crate) const BANKS: [Bank; 13] = [
     Bank::Rigs,
 ];
 
-/// The words for what `right` means, for the result.
+/// Definition of `right` in words, for the results.
 pub(crate) const RIGHT_MEANS: &str = "Effects of the measurement chain that come with records of every bank alike are struck \
     from an answer first. Where nothing is missing, an answer is right that names nothing, be its status none or \
     calibration. Where effects are hidden, its status has to be `effect` and its set exactly the hidden one. Where the hidden \
@@ -98,7 +98,7 @@ impl<'a> Judgment<'a> {
         let named_here: &[&str] = if said == Said::Effect { &named } else { &[] };
         let is_hidden = |id: &str| hidden.effects.iter().any(|effect| effect.id == id);
         let first = named_here.first().copied();
-        // A preload and a rest position that is off are one class on one record.
+        // A preload and a wrong rest position are one class on a single record.
         let said_first = first.or((said == Said::Calibration).then_some(VerdictStatus::Calibration.name()));
         let alike = |id: &str| {
             let classes = case.answer.iter().flat_map(|answer| &answer.verdict.equivalent);
@@ -138,7 +138,7 @@ impl<'a> Judgment<'a> {
         self.case.hidden.bank
     }
 
-    /// What the case asks of an answer.
+    /// Returns the kind of answer that the case asks for.
     pub(crate) fn asked(&self) -> Asked {
         self.case.hidden.asked()
     }
@@ -147,31 +147,33 @@ impl<'a> Judgment<'a> {
         self.case.answer.as_ref().ok()
     }
 
-    /// Size of what is hidden; of a pair of the smaller one: both have to be seen. Not a number without one.
+    /// Returns the size of what is hidden: for several effects the smallest, because all must be seen; NaN if
+    /// there is none.
     pub(crate) fn size(&self) -> f64 {
         let hidden = &self.case.hidden;
         let foreign = hidden.foreign.iter().map(|foreign| foreign.detectability);
         hidden.effects.iter().map(|effect| effect.detectability).chain(foreign).fold(f64::NAN, f64::min)
     }
 
-    /// Whether something was named, or `unknown`.
+    /// Returns `true` if the answer names something or says `unknown`.
     pub(crate) fn alarms(&self) -> bool {
         matches!(self.said, Said::Effect | Said::Unknown)
     }
 
-    /// Stated probability of an id of the answer's list; 0 where it is not listed.
+    /// Returns the stated probability of an identifier; 0 if the answer does not list it. `None` without an
+    /// answer.
     pub(crate) fn probability(&self, id: &str) -> Option<f64> {
         let answer = self.answer()?;
-        // A list leaves out what is hardly possible.
+        // Lists omit what is hardly possible.
         Some(answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability))
     }
 
-    /// What acts from outside the vocabulary, in words.
+    /// Returns the description of the law outside the vocabulary, if one acts.
     pub(crate) fn foreign_law(&self) -> Option<String> {
         self.case.hidden.foreign.as_ref().map(|foreign| foreign.law.clone())
     }
 
-    /// What was hidden, in a table's words.
+    /// Returns what was hidden, as written in tables.
     pub(crate) fn hidden_name(&self) -> String {
         let ids: Vec<&str> = self.case.hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
         match (self.bank(), ids.is_empty()) {
@@ -181,7 +183,7 @@ impl<'a> Judgment<'a> {
         }
     }
 
-    /// What was said, in a table's words.
+    /// Returns what was answered, as written in tables.
     pub(crate) fn said_name(&self) -> String {
         match self.said {
             Said::Effect => self.named.join("+"),
@@ -189,7 +191,7 @@ impl<'a> Judgment<'a> {
         }
     }
 
-    /// The kind that was hidden: of two effects that of the first.
+    /// Returns the kind of what was hidden; for several effects, that of the first.
     pub(crate) fn hidden_kind(&self) -> &'static str {
         match self.bank() {
             Bank::None => Said::None.name(),
@@ -199,7 +201,7 @@ impl<'a> Judgment<'a> {
         }
     }
 
-    /// The kind that was said: that of the first name.
+    /// Returns the kind of the answer: that of the first name.
     pub(crate) fn said_kind(&self) -> &'static str {
         match self.said {
             Said::Effect => self.named.first().map_or(Said::None.name(), |id| kind(id)),
@@ -207,7 +209,7 @@ impl<'a> Judgment<'a> {
         }
     }
 
-    /// Whether the kind is right: of two hidden effects either's.
+    /// Returns `true` if the kind is right; for several hidden effects, the kind of any of them is right.
     pub(crate) fn kind_is_right(&self) -> bool {
         let said = self.said_kind();
         said == self.hidden_kind()
@@ -216,8 +218,8 @@ impl<'a> Judgment<'a> {
     }
 }
 
-/// Status and names of an answer, nuisances struck. Where nothing but nuisances was named, `none` or `calibration`,
-/// whichever the answer holds for more probable.
+/// Returns status and names of an answer without nuisances. If only nuisances were named, the status is
+/// `none` or `calibration`, whichever is more probable according to the answer.
 fn said<'a>(answer: &'a DiagnosisResult, nuisances: &[String]) -> (Said, Vec<&'a str>) {
     let named: Vec<&str> =
         answer.verdict.effects.iter().filter(|id| !nuisances.contains(id)).map(String::as_str).collect();
@@ -236,7 +238,7 @@ fn said<'a>(answer: &'a DiagnosisResult, nuisances: &[String]) -> (Said, Vec<&'a
     (said, named)
 }
 
-/// The kind of verdict that naming an effect is.
+/// Returns the kind of verdict to which an effect belongs.
 fn kind(id: &str) -> &'static str {
     match Effect::find(id).map(|effect| effect.description().class) {
         Ok(Class::Sensor) => "sensor",

@@ -1,4 +1,4 @@
-//! Answers laid beside opened truths: pure functions.
+//! Scoring of answers against opened truths, by pure functions.
 
 pub(crate) mod accuracy;
 mod bars;
@@ -34,29 +34,31 @@ use results::{
 };
 use seed::Seed;
 
-/// Trials that were answered, with all that a score depends on.
+/// Trials whose cases were answered, with everything that the scores depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
     /// Name of the trials.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of every random draw.
     pub seed: u64,
-    /// Banks that were not made, and why.
+    /// Banks that were not made, with reasons.
     pub left_out: Vec<LeftOutBank>,
     /// Values that the scores have to reach.
     pub gate: Gate,
-    /// Wall time so far in seconds.
+    /// Elapsed wall time in seconds.
     pub seconds: f64,
 }
 
-/// Scores of all cases, in the order in which they were made.
+/// Scores all cases, in the order in which they were made.
 ///
-/// An answer is right where status and named set are, nuisances struck ([`TrialsResult::right_means`] says it in full).
-/// Shares come with 95 % intervals by Clopper and Pearson, medians with intervals by order statistics, areas
-/// under the ROC with DeLong's; whether probabilities hold is told by bins of equal count and a bootstrap over cases, whose draws
-/// follow from [`Trials::seed`]: the same cases give the same numbers. What could not be measured is not a number.
+/// An answer is right if its status and its named set are right after nuisances are removed;
+/// [`TrialsResult::right_means`] gives the full definition. Shares have 95 % intervals by Clopper and
+/// Pearson, medians by order statistics, areas under the ROC curve by DeLong. The calibration of
+/// probabilities is assessed in bins of equal count, with a bootstrap over cases. The bootstrap's draws
+/// follow from [`Trials::seed`], so the same cases give the same numbers. Quantities that could not be
+/// measured are NaN.
 ///
-/// `baselines` have an answer for each case, in the order of `cases`.
+/// `baselines` hold one answer for each case, in the order of `cases`.
 #[must_use]
 pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) -> TrialsResult {
     let judged: Vec<Judgment<'_>> = cases.iter().map(Judgment::of).collect();
@@ -108,20 +110,20 @@ pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) ->
     }
 }
 
-/// Returns whether some bar is missed with its whole interval.
+/// Returns `true` if some bar is missed by the whole interval.
 #[must_use]
 pub fn misses_a_bar(result: &TrialsResult) -> bool {
     result.bars.iter().any(|bar| bar.missed_beyond_chance)
 }
 
-/// One row a case.
+/// Returns one row per case.
 #[must_use]
 pub fn case_rows(cases: &[AnsweredCase]) -> Vec<TrialCaseRow> {
     cases.iter().map(|case| case_row(&Judgment::of(case))).collect()
 }
 
-/// Reliability of own and stressed banks, and the map: fitted to the cases of the own banks with an even place, scored
-/// on the others.
+/// Returns the reliability studies, and the probability map. The map is fitted to every second case of the
+/// own banks, from the first, and scored on the others.
 fn probabilities(judged: &[Judgment<'_>], seed: &Seed) -> (Vec<Reliability>, ProbabilityMap) {
     let own = |even: Option<bool>| -> Statements {
         let places = judged.iter().filter(|judgment| is_own(judgment.bank())).enumerate();
@@ -184,7 +186,7 @@ fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
     TrialCaseRow {
         id: judgment.case.id.clone(),
         bank: judgment.bank().name().to_owned(),
-        // Where nothing acts the cell is empty.
+        // If nothing acts, the cell is empty.
         hidden: if ids.is_empty() { judgment.foreign_law().unwrap_or_default() } else { ids.join("+") },
         size: sizes.join("+"),
         status: judgment.said.name().to_owned(),

@@ -1,4 +1,4 @@
-//! Whether probabilities hold what they say.
+//! Reliability (calibration) of stated probabilities.
 
 use super::isotonic::at;
 use super::judgment::Judgment;
@@ -8,22 +8,23 @@ use rand::RngExt;
 use results::{ProbabilityMap, Reliability, ReliabilityBin, VerdictStatus, WithInterval};
 use seed::Seed;
 
-/// Bins of equal count.
+/// Number of bins, with equal counts.
 const BINS: usize = 10;
-/// Draws of a bootstrap, and of outcomes by chance.
+/// Number of draws of a bootstrap, and of outcomes by chance.
 const DRAWS: usize = 1000;
 
-/// A stated probability and whether it was so, by case: what is drawn again is whole cases.
+/// Stated probabilities, each with `true` if the statement came true, grouped by case; the bootstrap draws
+/// whole cases.
 pub(crate) type Statements = Vec<Vec<(f64, bool)>>;
 
-/// Stated confidence of the answered cases.
+/// Returns the stated confidence of the answered cases.
 pub(crate) fn of_confidence<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> Statements {
     judged
         .filter_map(|judgment| Some(vec![(judgment.answer()?.verdict.confidence, judgment.right)]))
         .collect()
 }
 
-/// Stated probabilities of effects and of `unknown`, as listed in answers, nuisances struck.
+/// Returns the stated probabilities of effects and of `unknown`, as listed in answers, without nuisances.
 pub(crate) fn of_effects<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> Statements {
     judged
         .filter_map(|judgment| {
@@ -42,7 +43,7 @@ pub(crate) fn of_effects<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> 
         .collect()
 }
 
-/// Whether a bank's records come from the generator that most do.
+/// Returns `true` if a bank's records come from the default generator.
 pub(crate) fn is_own(bank: Bank) -> bool {
     !matches!(bank, Bank::Stressed | Bank::Measured | Bank::Engine | Bank::Composite | Bank::Rigs)
 }
@@ -53,7 +54,7 @@ fn sorted(statements: &Statements) -> Vec<(f64, bool)> {
     all
 }
 
-/// The bins' slices: as equal in count as can be. Equal probabilities may fall into two bins.
+/// Cuts a sorted list into bins with counts as equal as possible. Equal probabilities may fall into two bins.
 fn cut(sorted: &[(f64, bool)]) -> Vec<&[(f64, bool)]> {
     let bins = BINS.min(sorted.len());
     (0..bins)
@@ -67,7 +68,7 @@ fn means(bin: &[(f64, bool)]) -> (f64, f64) {
     (stated, bin.iter().filter(|pair| pair.1).count() as f64 / count)
 }
 
-/// Expected calibration error: mean over bins of |stated − found|, weighted by count.
+/// Returns the expected calibration error: the mean over bins of |stated − found|, weighted by count.
 fn calibration_error(sorted: &[(f64, bool)]) -> f64 {
     let count = sorted.len() as f64;
     let part = |bin: &[(f64, bool)]| {
@@ -77,10 +78,10 @@ fn calibration_error(sorted: &[(f64, bool)]) -> f64 {
     cut(sorted).into_iter().map(part).sum()
 }
 
-/// Reliability of stated probabilities. `None` of none.
+/// Returns the reliability of stated probabilities; `None` without statements.
 ///
-/// The bootstrap draws cases. Scatter alone makes a calibration error: what it would be on average for
-/// probabilities that are exactly right is stated beside it.
+/// The bootstrap draws cases. Scatter alone causes a calibration error, so the mean error for exactly right
+/// probabilities is stated as well.
 pub(crate) fn reliability(
     subject: &str,
     banks: &str,
@@ -126,7 +127,7 @@ pub(crate) fn reliability(
     })
 }
 
-/// The same statements, their probabilities mapped.
+/// Returns the same statements with mapped probabilities.
 pub(crate) fn mapped(statements: &Statements, map: &ProbabilityMap) -> Statements {
     let through = |case: &Vec<(f64, bool)>| case.iter().map(|(stated, so)| (at(map, *stated), *so)).collect();
     statements.iter().map(through).collect()
@@ -153,13 +154,13 @@ mod tests {
         assert!(found.bins.iter().all(|bin| bin.found.of == 200));
         let error = found.calibration_error;
         assert!(error.value < 2.0 * found.calibration_error_by_chance, "{error:?}");
-        // The mean of p·(1 − p) over even p.
+        // The mean of p·(1 − p) over uniform p.
         assert!((found.brier - 1.0 / 6.0).abs() < 0.02, "{}", found.brier);
     }
 
     #[test]
     fn overconfidence_shows() {
-        // Stated p, found p²: off by p − p² = 1/6 on average.
+        // Stated p, found p²: wrong by p − p² = 1/6 on average.
         let found = reliability("x", "own", &statements(|p, u| u < p * p, 2000), &Seed::new(1)).unwrap();
         let error = found.calibration_error;
         assert!((error.value - 1.0 / 6.0).abs() < 0.03, "{error:?}");

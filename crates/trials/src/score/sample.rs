@@ -1,11 +1,11 @@
-//! Cases and answers as tests need them.
+//! Sample cases and answers for tests.
 
 use super::AnsweredCase;
 use crate::hidden::{Bank, Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
 use results::DiagnosisResult;
 use serde_json::json;
 
-/// An answer with a status, names and a confidence; everything else plain.
+/// Builds an answer with a status, names and a confidence; the other values are arbitrary.
 pub(crate) fn answered(status: &str, named: &[&str], confidence: f64) -> Result<DiagnosisResult, String> {
     let estimate = json!({ "value": 0.95, "interval_95": [0.9, 0.99] });
     let coefficient = json!({ "nominal": 0.3, "unit": "1/s", "recalibrated": null, "repaired": null });
@@ -46,7 +46,7 @@ pub(crate) fn answered(status: &str, named: &[&str], confidence: f64) -> Result<
     Ok(serde_json::from_value(answer).unwrap())
 }
 
-/// A case with effects of size 25.
+/// Builds a case with effects of size 25.
 pub(crate) fn case(bank: Bank, hidden: &[&str], answer: Result<DiagnosisResult, String>) -> AnsweredCase {
     let effects = hidden
         .iter()

@@ -4,7 +4,7 @@ use results::{Proportion, Quantiles, WithInterval};
 use scoring::binomial_interval;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-/// A share of independent cases.
+/// Returns a share of independent cases.
 pub(crate) fn proportion(outcomes: impl IntoIterator<Item = bool>) -> Proportion {
     let (mut count, mut of) = (0_u64, 0_u64);
     for outcome in outcomes {
@@ -15,11 +15,11 @@ pub(crate) fn proportion(outcomes: impl IntoIterator<Item = bool>) -> Proportion
     Proportion { count, of, share, interval_95: binomial_interval(count as f64, of as f64) }
 }
 
-/// What could not be measured.
+/// Value of a quantity that could not be measured.
 pub(crate) const NO_NUMBER: WithInterval =
     WithInterval { value: f64::NAN, interval_95: [f64::NAN, f64::NAN] };
 
-/// A quantile by linear interpolation between the sorted values; not a number without any.
+/// Returns a quantile of sorted values by linear interpolation; NaN without values.
 pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = share.clamp(0.0, 1.0) * last as f64;
@@ -28,14 +28,15 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     at(below) + (place - below as f64) * (at(below + 1) - at(below))
 }
 
-/// Median with its interval by order statistics, 95 % quantile and largest of the finite values.
+/// Returns the median with its interval by order statistics, the 95 % quantile, and the largest of the finite
+/// values.
 pub(crate) fn quantiles(values: impl IntoIterator<Item = f64>) -> Quantiles {
     let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let count = sorted.len();
     let at = |rank: usize| sorted.get(rank).copied().unwrap_or(f64::NAN);
-    // The order statistics between which the median lies with 95 % probability, whatever the distribution.
-    // Of fewer than six values not even the smallest and the largest do.
+    // The median lies between these order statistics with 95 % probability, whatever the distribution. With
+    // fewer than six values, not even the smallest and the largest suffice.
     let rank = Binomial::new(0.5, count as u64).ok().filter(|_| count > 5);
     let low = rank.and_then(|binomial| usize::try_from(binomial.inverse_cdf(0.025)).ok()?.checked_sub(1));
     let interval_95 = low.map_or([f64::NAN; 2], |low| [at(low), at(count - 1 - low)]);
@@ -48,11 +49,12 @@ pub(crate) fn quantiles(values: impl IntoIterator<Item = f64>) -> Quantiles {
     }
 }
 
-/// Area under the receiver operating characteristic: the chance that a positive scores above a negative, ties counted
-/// half; with DeLong's interval on the logistic scale. `None` without both.
+/// Returns the area under the receiver operating characteristic: the probability that a positive scores above
+/// a negative, with ties counted half, and DeLong's interval on the logistic scale. `None` unless there are
+/// both.
 ///
-/// An area of exactly 0 or 1 has no variance; its interval is then that of as many trials as the smaller group has
-/// cases, all of them lost or won.
+/// An area of exactly 0 or 1 has no variance. Its interval is then that of a binomial share with as many
+/// trials as the smaller group has cases, all failures or all successes.
 ///
 /// # Reference
 /// E. R. DeLong, D. M. DeLong, D. L. Clarke-Pearson, Biometrics 44 (1988) 837–845.
@@ -104,7 +106,8 @@ mod tests {
             (found.count, found.median.value, found.quantile_95, found.worst),
             (101, 51.0, 96.0, 101.0)
         );
-        // Of 101 values the 41st and the 61st hold the median with at least 95 % (David and Nagaraja, table 7.1).
+        // For 101 values, the median lies between the 41st and the 61st with at least 95 % (David and
+        // Nagaraja, table 7.1).
         assert_eq!(found.median.interval_95, [41.0, 61.0]);
         let few = quantiles([1.0, 2.0, 3.0]).median;
         assert!(few.value == 2.0 && few.interval_95[0].is_nan());
@@ -123,7 +126,8 @@ mod tests {
         assert!(area(&[], &[1.0]).is_none());
     }
 
-    /// Against the exact variance of the area for two normal samples: of many draws about 95 % of intervals hold it.
+    /// Checks against the exact area for two normal samples: about 95 % of the intervals of many draws must
+    /// contain it.
     #[test]
     fn intervals_of_areas_hold() {
         use rand::RngExt;
@@ -136,7 +140,7 @@ mod tests {
                     .collect()
             };
             let (positives, negatives) = (draw(2.0_f64.sqrt(), 60), draw(0.0, 80));
-            // Φ(1), the chance that a unit normal shifted by √2 exceeds another.
+            // Φ(1), the probability that a standard normal variable shifted by √2 exceeds another one.
             let [low, high] = area(&positives, &negatives).unwrap().interval_95;
             held += usize::from(low <= 0.841_345 && 0.841_345 <= high);
         }

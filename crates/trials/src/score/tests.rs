@@ -1,4 +1,4 @@
-//! Of whole scores.
+//! Tests of whole scores.
 
 use super::sample::{answered, case};
 use super::{AnsweredCase, Gate, Trials, case_rows, misses_a_bar, misses_the_gate, score};
@@ -49,7 +49,7 @@ fn a_score_counts_every_case_once() {
     assert_eq!((found.cases, found.unanswered), (60, 6));
     let of: u64 = found.banks.iter().map(|bank| bank.right.of).sum();
     assert_eq!(of, 60);
-    // What has no answer is wrong.
+    // A case without an answer is wrong.
     assert_eq!(found.failures.len(), 6);
     assert!(found.failures.iter().all(|row| row.said == "no answer: too few samples"));
     assert_eq!((found.closure.coverage.count, found.closure.coverage.of, found.closure.below), (1, 2, 1));
@@ -60,7 +60,7 @@ fn a_score_counts_every_case_once() {
     assert_eq!(found.baselines[0].top_1.of, 20);
     assert_eq!(found.bars.len(), 13);
     assert_eq!(found.left_out[0].bank, "engine");
-    // A map fitted to the even half improves the other half's scores of too modest a confidence.
+    // A map fitted to the even half improves the other half's scores, whose confidence is too low.
     assert!(!found.map.knots.is_empty() && found.map.fitted_to > 20);
     assert_eq!(case_rows(&cases).len(), 60);
 }
@@ -99,7 +99,7 @@ fn a_gate_is_missed_by_a_score_on_the_wrong_side_alone() {
     assert!(!misses_the_gate(&score(&gate, &quiet, &[])));
     let missed = score(&gate, &loud, &[]);
     assert!(misses_the_gate(&missed) && missed.gate.len() == 1, "{:?}", missed.gate);
-    // What is not asked for is no part of it.
+    // A limit that is not set is not part of the gate.
     assert!(!misses_the_gate(&score(&trials(), &loud, &[])));
 }
 
@@ -116,7 +116,7 @@ fn a_gate_looks_at_the_leading_class() {
     let states = |case: AnsweredCase| -> Vec<String> {
         score(&gate, &[case], &[]).gate.into_iter().map(|row| row.state).collect()
     };
-    // A cubic spring is of gravity's class; the play is too small to count.
+    // A cubic spring belongs to gravity's class; the backlash is too small to count.
     assert_eq!(states(of(&["cubic_stiffness"], 0.95)), ["met", "met", "met", "met"]);
     assert_eq!(states(of(&["cubic_stiffness"], 0.5)), ["met", "not met", "met", "met"]);
     assert_eq!(states(of(&["backlash", "end_stop"], 0.95)), ["not met", "not met", "not met", "met"]);

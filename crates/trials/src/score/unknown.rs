@@ -1,4 +1,4 @@
-//! Telling what has no name from what has.
+//! Detection of laws without a name (`unknown`).
 
 use super::accuracy::{SIZES, range, within};
 use super::judgment::Judgment;
@@ -6,11 +6,12 @@ use super::statistics::area;
 use crate::hidden::{Asked, Bank};
 use results::{AreaRow, UnknownStudy, VerdictStatus};
 
-/// Points of the curve that are kept.
+/// Largest number of points kept of the curve.
 const MOST_POINTS: usize = 200;
 
-/// Areas under the curve of the stated probability of `unknown`: cases whose effect was not to be considered or lies
-/// outside the vocabulary against those with named effects or none.
+/// Returns the areas under the ROC curve of the stated probability of `unknown`. Positives are cases whose
+/// effect was not to be considered or lies outside the vocabulary; negatives are cases with named effects or
+/// none.
 pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
     let score = |judgment: &Judgment<'_>| judgment.probability(VerdictStatus::Unknown.name());
     let is_negative = |bank: Bank| matches!(bank, Bank::None | Bank::Calibration | Bank::Single | Bank::Pair);
@@ -38,7 +39,7 @@ pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
     UnknownStudy { areas: all.iter().map(|found| found.0.clone()).chain(by_size).collect(), curve }
 }
 
-/// False alarms and hits over all thresholds, from none to all.
+/// Returns false alarms and hits over all thresholds, from none to all.
 fn curve(positives: &[f64], negatives: &[f64]) -> Vec<[f64; 2]> {
     let mut thresholds: Vec<f64> = positives.iter().chain(negatives).copied().collect();
     thresholds.sort_by(|a, b| b.total_cmp(a));

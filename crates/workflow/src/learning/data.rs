@@ -1,11 +1,12 @@
-//! Records as data sets.
+//! Data sets made of records.
 
 use experiment::LearningProblem;
 use learn::LearnError;
 use learn::data::Trajectory;
 use record::{Quantity, Record};
 
-/// Checks that a record can be learned from beside others: positions, in one unit. `first` holds the first record's name and unit.
+/// Checks that a record can be learned from together with others: it must hold positions, all in one unit.
+/// `first` holds the first record's name and unit.
 ///
 /// # Errors
 /// [`LearnError::NoPosition`] and [`LearnError::MixedUnits`].
@@ -30,10 +31,11 @@ pub fn check_record(
     Ok(())
 }
 
-/// One sample of so many, on the clock that is believed, counted from its first.
+/// Builds a trajectory from every n-th sample of a record (`every` of the problem). Times are those of the
+/// believed clock, counted from its first sample.
 ///
 /// # Errors
-/// As [`Trajectory::new`].
+/// Same as [`Trajectory::new`].
 pub fn trajectory(
     problem: &LearningProblem,
     name: &str,
@@ -45,7 +47,7 @@ pub fn trajectory(
         values.iter().map(|value| if problem.remove_mean { value - mean } else { *value }).collect()
     };
     let thin = |values: &[f64]| values.iter().step_by(problem.every).copied().collect::<Vec<f64>>();
-    // Without a sample there is no time to count from.
+    // Without samples there is no start time.
     let first = times_s.first().copied().unwrap_or_default();
     let times = thin(times_s).iter().map(|time| time - first).collect();
     let input = record.input().map(|input| thin(&centered(input)));

@@ -1,4 +1,4 @@
-//! Methods of a learning study: the registries' learners and baselines, each tried on a data set and judged.
+//! Methods of a learning study: the registries' learners and baselines, each fitted to a data set and scored.
 
 use super::Ready;
 use experiment::LearnSettings;
@@ -12,7 +12,7 @@ use settings::{Resolved, SettingsError};
 
 type Make<'a> = Box<dyn Fn(&Ready, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
 
-/// A learner, a baseline or the reference, ready to be tried on a data set.
+/// Learner, baseline or reference, ready to be fitted to a data set.
 pub struct Method<'a> {
     /// Identifier, as in configurations.
     pub id: &'a str,
@@ -23,24 +23,24 @@ pub struct Method<'a> {
     make: Make<'a>,
 }
 
-/// A model with its scores.
+/// Model with its scores.
 pub struct Judged {
-    /// The model.
+    /// Fitted model.
     pub model: Box<dyn Model>,
-    /// State that the training reached.
+    /// State in which the training ended.
     pub reached: Reached,
     /// Scores on the test part.
     pub score: Score,
-    /// Error of free runs over the validation part, in the position's unit; infinite where one fails.
+    /// Error of free runs over the validation part, in the position's unit; infinite if a run fails.
     pub validation: f64,
     /// Free runs on the test part.
     pub runs: Vec<Run>,
 }
 
-/// The methods that a configuration asks for, in the order of the registries.
+/// Returns the methods that a configuration asks for, in the order of the registries.
 ///
 /// # Errors
-/// [`SettingsError`] for settings that a learner cannot be built from.
+/// [`SettingsError`] for settings from which a learner cannot be built.
 pub fn methods<'a>(settings: &LearnSettings, resolved: &Resolved) -> Result<Vec<Method<'a>>, SettingsError> {
     let wanted = |names: &Option<Vec<String>>, id: &str| {
         names.as_ref().is_none_or(|names| names.iter().any(|name| name == id))
@@ -65,23 +65,23 @@ pub fn methods<'a>(settings: &LearnSettings, resolved: &Resolved) -> Result<Vec<
     Ok(methods)
 }
 
-/// A learner from outside of the registries as a method.
+/// Wraps a learner from outside the registries as a method.
 #[must_use]
 pub fn method_of<'a>(id: &'a str, title: &'a str, learner: &'a dyn Learner) -> Method<'a> {
     let make: Make<'a> = Box::new(move |ready, context| learner.fit(&ready.data, context));
     Method { id, title, kind: LearnKind::Learner, make }
 }
 
-/// Makes a method's model of a data set and scores it on the test part.
+/// Fits a method to a data set and scores its model on the test part.
 ///
 /// # Errors
-/// [`LearnError`] where the method gives no model.
+/// [`LearnError`] if the method returns no model.
 pub fn attempt(ready: &Ready, method: &Method<'_>, context: &Context<'_>) -> Result<Judged, LearnError> {
     let fitted = context.check().and_then(|()| (method.make)(ready, context))?;
     Ok(judged(fitted.model, fitted.reached, &ready.data))
 }
 
-/// A model with its scores on the test part.
+/// Scores a model on the test part.
 #[must_use]
 pub fn judged(model: Box<dyn Model>, reached: Reached, data: &DataSet) -> Judged {
     let runs = runs(model.as_ref(), data);
@@ -90,7 +90,8 @@ pub fn judged(model: Box<dyn Model>, reached: Reached, data: &DataSet) -> Judged
     Judged { model, reached, score, validation, runs }
 }
 
-/// The true torque of a data set's records at visited states, where it is a function of the state.
+/// Returns the true torque of a data set's records at the visited states; `None` if it is unknown or not a
+/// function of the state.
 #[must_use]
 pub fn truth_of(ready: &Ready) -> Option<Truth> {
     ready.truth.as_ref().and_then(|system| Truth::new(system, &ready.data).ok().flatten())

@@ -13,14 +13,14 @@ pub use tried::{Tried, tried};
 use dynamics::System;
 use learn::data::DataSet;
 
-/// A data set that can be learned from.
+/// Data set that can be learned from.
 pub struct Ready {
-    /// The set, split.
+    /// Data set, split into its parts.
     pub data: DataSet,
     /// Number of records.
     pub records: usize,
-    /// Records with missing cells, and what was done about these.
+    /// Records with missing cells, and how these were treated.
     pub missing: Vec<String>,
-    /// System that generated simulated records; only the judge looks at it.
+    /// System that generated simulated records; used only for scoring.
     pub truth: Option<System>,
 }

@@ -14,8 +14,8 @@ use results::{
 use seed::Seed;
 use std::collections::BTreeMap;
 
-/// The row of a method in the table of results; `problem` names the data set, `model` the file that keeps a model which can be
-/// kept.
+/// Builds a method's row in the table of results. `problem` names the data set; `model` names the file that
+/// stores the model, if the model can be stored.
 #[must_use]
 pub fn row(
     problem: &str,
@@ -64,8 +64,9 @@ pub fn row(
     row
 }
 
-/// Rows of a learner's model with everything that it learned at zero, and given noise in place of past and input; none for
-/// other methods, where nothing was learned, and for a model that cannot be kept.
+/// Builds the ablation rows of a learner's model: one with everything that it learned set to zero, one with
+/// noise in place of past and input. Empty for other methods, which learned nothing, and for a model that
+/// cannot be stored.
 #[must_use]
 pub fn ablation_rows(
     problem: &str,
@@ -100,7 +101,8 @@ pub fn ablation_rows(
     zero.into_iter().chain([row("on-noise", "given noise", on_noise)]).collect()
 }
 
-/// Sorts rows by their error in free runs, the best first and what failed last; ablations after all others.
+/// Sorts rows by their error in free runs, the best first and failed ones last; ablations come after all
+/// others.
 pub fn sort(rows: &mut [LearnRow]) {
     let error =
         |row: &LearnRow| row.test.as_ref().and_then(|test| test.free_run_rmse).unwrap_or(f64::INFINITY);
@@ -149,7 +151,8 @@ fn coefficients(
     if all.is_empty() {
         return None;
     }
-    // A term of the truth that the law lacks stands with a value of 0; a simulator's coefficients have other names.
+    // A term of the truth that the law lacks is listed with a value of 0. A simulator's coefficients have
+    // other names.
     let is_law = errors.iter().any(|error| all.contains_key(&error.name));
     for error in errors.into_iter().filter(|_| is_law) {
         all.entry(error.name).or_insert(LearnCoefficient {
@@ -163,7 +166,7 @@ fn coefficients(
     Some(all)
 }
 
-/// A data set's line in results; `ready` is the set, or the reason why its records are not there.
+/// Builds a data set's row in results; `ready` is the data set, or the reason why its records are missing.
 #[must_use]
 pub fn described(id: &str, title: &str, origin: Origin, ready: Result<&Ready, &String>) -> LearnProblem {
     let mut described = LearnProblem {

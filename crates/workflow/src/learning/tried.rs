@@ -1,4 +1,4 @@
-//! One method on one data set.
+//! Attempt of one method on one data set.
 
 use super::Ready;
 use super::method::{Judged, Method, attempt};
@@ -10,15 +10,15 @@ use std::time::Instant;
 
 /// Result of a method on a data set.
 pub struct Tried {
-    /// The model with its scores, or the reason why there is none.
+    /// Model with its scores, or the reason why there is none.
     pub fitted: Result<Judged, LearnError>,
-    /// Time that the fit took, in seconds.
+    /// Duration of the fit, in seconds.
     pub seconds: f64,
     /// Steps of the training.
     pub steps: Vec<Step>,
 }
 
-/// Makes a method's model of a data set and scores it; `observe` is called after every step.
+/// Fits a method to a data set and scores its model; `observe` is called after every step.
 #[must_use]
 pub fn tried(
     ready: &Ready,
@@ -39,6 +39,6 @@ pub fn tried(
     let fitted =
         attempt(ready, method, &Context { seed, max_steps, cancel, observe: &observe, checkpoints: None });
     let seconds = start.elapsed().as_secs_f64();
-    // A lock that a panic left behind counted no step.
+    // If a panic poisoned the lock, no steps are reported.
     Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
 }

@@ -1,9 +1,10 @@
-//! Half swings as a witness: amplitude, duration and center of every half swing over a whole record, and what they say
-//! for laws of loss and of the restoring torque.
+//! Half swings as independent evidence: amplitude, duration and center of every half swing over a whole
+//! record, and the log evidence that they give for laws of loss and of the restoring torque.
 //!
-//! Segments with start states of their own forget what the amplitude did over a whole record; half swings do not. Phase
-//! is what real disturbances reach first and amplitude is quiet, so that this is a second witness with other weaknesses
-//! than a fit's. It tells classes of laws, not kinds within a class.
+//! Segments with their own start states lose the change of the amplitude over the whole record; half swings
+//! keep it. Real disturbances affect the phase first and leave the amplitude quiet, so half swings are a
+//! second witness with other weaknesses than a fit. They distinguish classes of laws, not kinds within a
+//! class.
 
 mod averaging;
 mod regression;
@@ -22,46 +23,49 @@ use regression::{Hypothesis, Increments, Prior, by_replacement, hypotheses};
 use std::f64::consts::PI;
 use turning_points::{Turn, turning_points};
 
-/// Half a swing, from one turning point to the next.
+/// Half swing: the motion from one turning point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct HalfSwing {
-    /// Number of the record it belongs to.
+    /// Index of the record that contains it, from 0.
     pub(crate) record: usize,
-    /// Middle between its turning points, in seconds since the record's first sample.
+    /// Mean time of its two turning points, in seconds since the record's first sample.
     pub(crate) time_s: f64,
-    /// Half the distance of its turning points, in the observed unit, with its standard error from the noise.
+    /// Half the distance between its turning points, in the observed unit, with the standard error from the
+    /// noise.
     pub(crate) amplitude: Estimate,
-    /// Time between its turning points in seconds.
+    /// Time between its turning points in seconds, with its standard error.
     pub(crate) duration_s: Estimate,
-    /// Mean of its turning points.
+    /// Mean value of its turning points in the observed unit, with its standard error.
     pub(crate) center: Estimate,
 }
 
-/// Evidence of half swings for laws: natural logarithms of evidence by replacement, that is of the best combination with
-/// the law less the best without it. `None` where the records cannot tell.
+/// Evidence from half swings for laws, in nats: the log evidence of the best combination with the law minus
+/// that of the best combination without it. `None` if the records cannot tell.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Witness {
     /// Number of half swings.
     pub(crate) count: usize,
-    /// Number of independent ones among them, by what the best law of loss leaves of the amplitudes.
+    /// Effective number of independent amplitudes, from the autocorrelation of what the best law of loss
+    /// leaves of them.
     pub(crate) effective: f64,
-    /// Loss that does not depend on the amplitude: dry friction.
+    /// Evidence for a loss that does not depend on the amplitude: dry friction.
     pub(crate) friction: Option<f64>,
-    /// Loss that grows with the amplitude's square: quadratic drag.
+    /// Evidence for a loss that grows with the square of the amplitude: quadratic drag.
     pub(crate) drag: Option<f64>,
-    /// Loss in proportion to the amplitude.
+    /// Evidence for a loss in proportion to the amplitude: viscous damping.
     pub(crate) viscous: Option<f64>,
-    /// Duration that depends on even powers of the amplitude: cubic stiffness, gravity.
+    /// Evidence for a duration that depends on even powers of the amplitude: cubic stiffness, gravity.
     pub(crate) even_stiffness: Option<f64>,
-    /// Duration that depends on time: a drifting stiffness or clock.
+    /// Evidence for a duration that depends on time: a drifting stiffness or clock.
     pub(crate) period_drift: Option<f64>,
-    /// Center that depends on the amplitude's square: asymmetric stiffness, a weight at an angle.
+    /// Evidence for a center that depends on the square of the amplitude: asymmetric stiffness, a weight at
+    /// an angle.
     pub(crate) asymmetric: Option<f64>,
-    /// Center that depends on time: a drifting sensor or rest position.
+    /// Evidence for a center that depends on time: a drifting sensor or rest position.
     pub(crate) center_drift: Option<f64>,
-    /// Duration that grows toward small amplitudes: play, a dead band.
+    /// Evidence for a duration that grows toward small amplitudes: backlash, a dead zone.
     pub(crate) play: Option<f64>,
-    /// Duration that shrinks toward small amplitudes: friction that bends before it slides.
+    /// Evidence for a duration that shrinks toward small amplitudes: friction that bends before it slides.
     pub(crate) presliding: Option<f64>,
     /// Amplitude that dry friction takes from half a swing, in the observed unit.
     pub(crate) dry_loss: Estimate,
@@ -73,33 +77,33 @@ pub(crate) struct Witness {
     pub(crate) softening: Estimate,
 }
 
-/// Half swings of records of one system, and what they say.
+/// Half swings of all records of one system, and the evidence from them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HalfSwings {
     pub(crate) swings: Vec<HalfSwing>,
     pub(crate) witness: Witness,
 }
 
-/// Fewest half swings that say anything of laws.
+/// Fewest half swings from which evidence for laws is computed.
 const FEWEST: usize = 8;
-/// Largest relative change of the duration that is thought of before, over the amplitudes or over the record.
+/// Largest relative change of the duration that the prior admits, over the amplitudes or over the record.
 const LARGEST_CHANGE: f64 = 0.5;
-/// Largest shift of the center that is thought of before, over the largest amplitude.
+/// Largest shift of the center that the prior admits, relative to the largest amplitude.
 const LARGEST_SHIFT: f64 = 0.5;
 
-/// A run of successive turning points of a record.
+/// Run of successive turning points of one record.
 struct Run {
     record: usize,
     turns: Vec<Turn>,
     swings: Vec<HalfSwing>,
 }
 
-/// Half swings of all freely swinging records of a system and their evidence for laws; `None` where no record swings
-/// freely or fewer than two half swings stand out.
+/// Finds the half swings of all freely swinging records of a system and computes their evidence for laws.
+/// Returns `None` if no record swings freely or fewer than two half swings stand out.
 ///
-/// `kept` tells which samples are no outliers and belong to the free swing; `angular_frequency` in rad/s is what the
-/// nominal simulator expects, a hint within a factor of two. Records that are driven, or of a velocity or acceleration,
-/// are left out. Laws are shared by all records, amplitudes are their own.
+/// `kept` marks the samples that are not outliers and belong to the free swing. `angular_frequency` in rad/s
+/// is the nominal simulator's; it is a hint that has to be right within a factor of two. Driven records and
+/// records of velocity or acceleration are left out. All records share the laws; each has its own amplitudes.
 pub(crate) fn half_swings(
     records: &[Observations],
     kept: &[Vec<bool>],
@@ -152,8 +156,8 @@ fn swings(record: usize, turns: &[Turn]) -> Vec<HalfSwing> {
 
 fn witness(runs: &[Run], swings: &[HalfSwing]) -> Witness {
     let mut witness = Witness { count: swings.len(), ..Witness::default() };
-    // What a swing loses lengthens it in second order, and the laws of loss are averaged over the swing that the durations
-    // tell: each is needed for the other once.
+    // A loss lengthens the swing in second order, and the laws of loss are averaged over the swing that the
+    // durations determine. So each is computed once with the other's result.
     let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
     let lost = losses(runs, swings, &|_| Restoring::harmonic(PI / typical), &mut witness);
     let durations = durations(runs, swings, &lost, &mut witness);
@@ -171,7 +175,7 @@ fn span(swings: &[HalfSwing]) -> f64 {
     (times().fold(f64::MIN, f64::max) - times().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
 }
 
-/// Terms of the durations, and their powers of the amplitude.
+/// Indices of the terms that explain durations, and the power of the amplitude in each.
 const CONSTANT: usize = 0;
 const SQUARE: usize = 1;
 const FOURTH: usize = 2;
@@ -180,14 +184,15 @@ const PRESLIDING: std::ops::Range<usize> = 5..7;
 const TIME: usize = 7;
 const LOSS: usize = 8;
 const POWERS: [i32; TIME] = [0, 2, 4, -1, -2, -1, -2];
-/// Share of a duration by which a swing that loses all its amplitude would be longer, at most: 1/(2π²) under viscous
-/// damping, and of this order under other laws.
+/// Largest relative lengthening of a swing that loses all its amplitude: 1/(2π²) under viscous damping, and
+/// of this order under other laws.
 const LARGEST_LENGTHENING: f64 = 0.1;
 
-/// Durations over even and inverse powers of the amplitude and time; gives the best combination.
+/// Regresses the durations on even and inverse powers of the amplitude and on time. Returns the best
+/// combination.
 ///
-/// Inverse powers lengthen the small swings (play) or shorten them (friction that bends before it slides), never both; a
-/// fourth power stands only beside a second.
+/// Inverse powers either lengthen the small swings (backlash) or shorten them (friction that bends before it
+/// slides), never both. A fourth power is admitted only with a second one.
 fn durations(
     runs: &[Run],
     swings: &[HalfSwing],
@@ -209,7 +214,7 @@ fn durations(
     witness.play = by_replacement(&found, &|acts| any(acts, PLAY));
     witness.presliding = by_replacement(&found, &|acts| any(acts, PRESLIDING));
     let best = found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    // A term that the best law does not have has no coefficient.
+    // A term that the best law lacks has no coefficient.
     let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
     let base = of(CONSTANT).value;
     let error = of(SQUARE).error.hypot(of(FOURTH).error) / base;
@@ -217,7 +222,7 @@ fn durations(
     Some(best)
 }
 
-/// Durations of runs and the terms that they are explained by.
+/// Returns the durations of each run and the terms that explain them.
 fn of_durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Vec<Increments> {
     let (most, span) = (largest(swings), span(swings));
     let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
@@ -245,7 +250,7 @@ fn of_durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Vec<In
         .collect()
 }
 
-/// What the terms of a duration may be, where it is `typical` in s.
+/// Returns the priors of the terms of a duration; `typical` is the typical duration in s.
 fn of_terms(typical: f64) -> Vec<Prior> {
     let change = LARGEST_CHANGE * typical;
     let mut priors = vec![Prior::Within(change); LOSS + 1];
@@ -260,10 +265,10 @@ fn of_terms(typical: f64) -> Vec<Prior> {
     priors
 }
 
-/// The restoring torque that the durations tell, as it has drifted by a swing.
+/// Returns the restoring torque implied by the durations, with its drift up to the time of a swing.
 fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfSwing) -> Restoring {
     let of = |term: usize| {
-        // Durations that nothing is known of depend on nothing.
+        // Without a fit of the durations they depend on nothing.
         durations.and_then(|found| found.coefficients.get(term)).map_or(0.0, |estimate| estimate.value)
     };
     let base = of(CONSTANT).max(f64::MIN_POSITIVE);
@@ -276,8 +281,8 @@ fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfS
     )
 }
 
-/// Increments of what turning points measure on either side, a half swing's amplitude or center, over increments of
-/// terms: the errors are shared with the next but one.
+/// Returns the increments of a quantity measured from both turning points (amplitude or center of a half
+/// swing) and those of its terms. Increments two places apart share an error.
 fn of_turns(run: &Run, measured: &dyn Fn(&HalfSwing) -> f64, terms: Vec<Vec<f64>>) -> Increments {
     let ends = run.turns.iter().zip(run.turns.iter().skip(2));
     let variances: Vec<f64> =
@@ -291,17 +296,18 @@ fn steps(values: &[f64]) -> Vec<f64> {
     values.iter().zip(values.iter().skip(1)).map(|(one, next)| next - one).collect()
 }
 
-/// Largest coefficient of a law that is thought of before, over the one that explains all that is lost.
+/// Largest coefficient of a law that the prior admits, relative to the one that explains the whole loss.
 const ROOM: f64 = 1.5;
 
-/// Terms of the loss: dry, viscous, and with the square of the velocity. A cubic term and a viscous one that changes in
-/// time were tried beside them: each takes over true drag and friction more often than it saves from false ones.
+/// Indices of the terms of the loss: dry, viscous, and with the square of the velocity. A cubic term and a
+/// viscous one that changes in time were tried too: each replaces true drag and friction more often than it
+/// prevents false ones.
 const DRY: usize = 0;
 const VISCOUS: usize = 1;
 const QUADRATIC: usize = 2;
 
-/// Loss of amplitude by each law, averaged over the swing that the durations tell; gives what the best combination takes
-/// from each swing of each run.
+/// Regresses the loss of amplitude on the laws, each averaged over the swing that the durations determine.
+/// Returns the loss of each swing of each run under the best combination.
 fn losses(
     runs: &[Run],
     swings: &[HalfSwing],
@@ -310,7 +316,7 @@ fn losses(
 ) -> Vec<Vec<f64>> {
     let most = largest(swings);
     let omega = restoring(&HalfSwing { time_s: 0.0, ..HalfSwing::default() }).angular_frequency;
-    // Units: the amplitude, and shares of the amplitude, lost in a harmonic half swing.
+    // Units of the coefficients: the amplitude, and shares of it, lost in a harmonic half swing.
     let laws = |swing: &HalfSwing| {
         let (restoring, a) = (restoring(swing), swing.amplitude.value);
         [
@@ -332,7 +338,7 @@ fn losses(
             of_turns(run, &|swing| swing.amplitude.value, (0..=QUADRATIC).map(term).collect())
         })
         .collect();
-    // A coefficient is at most what explains all that is lost.
+    // The prior's bound: the coefficient at which one law explains the whole loss, times `ROOM`.
     let all: f64 = -increments.iter().flat_map(|run| &run.values).sum::<f64>();
     let bound = |term: usize| {
         let own: f64 = -increments.iter().filter_map(|run| run.terms.get(term)).flatten().sum::<f64>();
@@ -357,7 +363,7 @@ fn losses(
     lost.iter().map(|run| run.iter().map(sum).collect()).collect()
 }
 
-/// Number of independent amplitudes by what a combination leaves of them.
+/// Returns the effective number of independent amplitudes, from the residuals of a combination.
 fn effective(increments: &[Increments], best: &Hypothesis) -> f64 {
     let pieces: Vec<Vec<f64>> = increments
         .iter()
@@ -380,8 +386,8 @@ fn effective(increments: &[Increments], best: &Hypothesis) -> f64 {
     count as f64 / autocorrelation_time(&pieces).max(2.0)
 }
 
-/// Centers over the amplitude's square and time. The middle of two turning points lies off the swing's center by half of
-/// what the swing loses, to either side in turn.
+/// Regresses the centers on the square of the amplitude and on time. The mean of two turning points lies off
+/// the swing's center by half of the swing's loss, to alternating sides.
 fn centers(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>], witness: &mut Witness) {
     let (most, span) = (largest(swings), span(swings));
     let increments: Vec<Increments> = runs

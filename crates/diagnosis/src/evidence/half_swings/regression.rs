@@ -1,8 +1,10 @@
-//! Regression of increments from swing to swing whose errors are those of the turning points and a random walk beside.
+//! Regression of increments from swing to swing. The errors are those of the turning points plus a random
+//! walk.
 //!
-//! An increment holds the errors of the two turning points it spans, with opposite signs, so that they do not add up
-//! over the record; what no law explains (a discrepancy of each swing) does add up. Their ratio is not known: the
-//! evidence is its mean over a grid of ratios, and the common scale is integrated out.
+//! An increment contains the errors of the two turning points that it spans, with opposite signs, so these
+//! errors do not add up over the record. The discrepancy of each swing, which no law explains, does add up.
+//! The ratio of the two variances is unknown: the evidence is averaged over a grid of ratios, and the common
+//! scale is integrated out.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -13,41 +15,43 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Increments {
     pub(crate) values: Vec<f64>,
-    /// One list a term, each as long as the values.
+    /// One list per term, each as long as `values`.
     pub(crate) terms: Vec<Vec<f64>>,
     /// Covariance of the measured values: variances, and covariances with the next and the next but one.
     pub(crate) covariance: [Vec<f64>; 3],
 }
 
-/// What is known of a term's coefficient before.
+/// Prior distribution of a term's coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Prior {
-    /// Part of every hypothesis.
+    /// Flat prior; the term is part of every hypothesis.
     Always,
-    /// Evenly distributed from 0 to a largest value.
+    /// Uniform from 0 to a largest value.
     UpTo(f64),
-    /// Evenly distributed between minus and plus a largest value.
+    /// Uniform between minus and plus a largest value.
     Within(f64),
 }
 
-/// A coefficient with its standard error.
+/// Coefficient with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Estimate {
     pub(crate) value: f64,
     pub(crate) error: f64,
 }
 
-/// One hypothesis: which terms act, its log evidence, their coefficients (0 for those that do not act).
+/// Hypothesis: the terms that act, its log evidence, and the coefficients (0 for terms that do not act).
 #[derive(Debug, Clone)]
 pub(crate) struct Hypothesis {
     pub(crate) acts: Vec<bool>,
     pub(crate) evidence: f64,
     pub(crate) coefficients: Vec<Estimate>,
-    /// Variance that the discrepancy of a swing adds, over that of a measured increment.
+    /// Variance added by the discrepancy of a swing, relative to that of a measured increment, at the largest
+    /// evidence.
     pub(crate) ratio: f64,
 }
 
-/// Powers of ten of the discrepancy's variance over a measured increment's, half a power apart, and none.
+/// Exponents of the grid of ratios, in half powers of ten: the variance of the discrepancy over that of a
+/// measured increment. The ratio 0 is added.
 const RATIOS: std::ops::RangeInclusive<i32> = -12..=6;
 
 /// Inner products of the whitened increments at one ratio.
@@ -60,7 +64,8 @@ struct Whitened {
     count: usize,
 }
 
-/// All sets of terms that `allowed` lets pass, with their evidence; empty where there are too few increments.
+/// Returns all sets of terms that satisfy `allowed`, with their evidence; empty if there are too few
+/// increments.
 pub(crate) fn hypotheses(
     runs: &[Increments],
     priors: &[Prior],
@@ -80,7 +85,8 @@ pub(crate) fn hypotheses(
         .collect()
 }
 
-/// Log evidence of the best set with a term less that of the best without it; `None` where either is missing.
+/// Returns the log evidence of the best set that satisfies `has` minus that of the best set that does not;
+/// `None` if either is missing.
 pub(crate) fn by_replacement(found: &[Hypothesis], has: &dyn Fn(&[bool]) -> bool) -> Option<f64> {
     let best = |wanted: bool| {
         let evidences = found.iter().filter(|one| has(&one.acts) == wanted).map(|one| one.evidence);
@@ -110,11 +116,11 @@ fn whiten(runs: &[Increments], terms: usize, ratio: f64, scale: f64) -> Option<W
         let columns: Vec<Vec<f64>> = run.terms.iter().map(|term| factor.solve(term)).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         whitened.normal += DMatrix::from_fn(terms, terms, |row, column| {
-            // As many columns as terms.
+            // There are as many columns as terms.
             columns.get(row).zip(columns.get(column)).map_or(0.0, |(a, b)| dot(a, b))
         });
         whitened.right +=
-            // As many columns as terms.
+            // There are as many columns as terms.
             DVector::from_fn(terms, |row, _| columns.get(row).map_or(0.0, |term| dot(term, &values)));
         whitened.squares += dot(&values, &values);
         whitened.log_determinant += factor.log_determinant();
@@ -123,7 +129,7 @@ fn whiten(runs: &[Increments], terms: usize, ratio: f64, scale: f64) -> Option<W
     Some(whitened)
 }
 
-/// Lower Cholesky factor of a covariance with two neighbors on either side.
+/// Lower Cholesky factor of a covariance matrix with two off-diagonals on either side.
 struct Banded {
     diagonal: Vec<f64>,
     next: Vec<f64>,
@@ -136,10 +142,10 @@ impl Banded {
         let mut factor = Self { diagonal: Vec::new(), next: Vec::new(), second: Vec::new() };
         for (row, variance) in variances.iter().enumerate() {
             let back = |list: &[f64], by: usize| {
-                // What lies before the first row takes no part.
+                // Entries before the first row do not count.
                 row.checked_sub(by).and_then(|at| list.get(at)).copied().unwrap_or(0.0)
             };
-            // Entries of this row: two before, one before, itself.
+            // Entries of this row: two before, one before, and the diagonal.
             let far = if row >= 2 { back(second, 2) / back(&factor.diagonal, 2) } else { 0.0 };
             let near = if row >= 1 {
                 // The band has an entry for the row before.
@@ -148,7 +154,7 @@ impl Banded {
             } else {
                 0.0
             };
-            // A part in 10⁹ keeps a chain of increments that cancel from being singular.
+            // A part in 10⁹ keeps a chain of canceling increments from being singular.
             let own = variance * (1.0 + 1e-9) + added - near * near - far * far;
             if own.is_nan() || own <= 0.0 {
                 return None;
@@ -164,7 +170,7 @@ impl Banded {
         let mut solved: Vec<f64> = Vec::with_capacity(values.len());
         let rows = self.diagonal.iter().zip(&self.next).zip(&self.second).zip(values);
         for (row, (((diagonal, near), far), value)) in rows.enumerate() {
-            // What lies before the first row takes no part.
+            // Entries before the first row do not count.
             let back = |by: usize| row.checked_sub(by).and_then(|at| solved.get(at)).copied().unwrap_or(0.0);
             let own = (value - near * back(1) - far * back(2)) / diagonal;
             solved.push(own);
@@ -199,7 +205,8 @@ fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<
     })
 }
 
-/// Log evidence of a set at one ratio, scale and coefficients integrated out; coefficients with standard errors.
+/// Returns the log evidence of a set at one ratio, with scale and coefficients integrated out, and the
+/// coefficients with their standard errors.
 fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(f64, Vec<Estimate>)> {
     let terms = places.len();
     let freedom = whitened.count.checked_sub(terms).filter(|left| *left >= 3)? as f64;
@@ -210,17 +217,17 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
             .and_then(|place| whitened.normal.get((*place.0, *place.1)))
             .copied()
     };
-    // Places are within the normal matrix.
+    // Places are indices into the normal matrix.
     let normal = DMatrix::from_fn(terms, terms, |row, column| entry(row, column).unwrap_or_default());
     let right = DVector::from_fn(terms, |row, _| {
-        // Places are within the normal matrix.
+        // Places are indices into the normal matrix.
         places.get(row).and_then(|place| whitened.right.get(*place)).copied().unwrap_or_default()
     });
-    // Units differ by many orders: columns of length 1 before the factorization.
+    // The units differ by many orders of magnitude: columns are scaled to length 1 before the factorization.
     let lengths = normal.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let unit = DMatrix::from_fn(terms, terms, |row, column| {
         let length = |at: usize| lengths.get(at).copied().unwrap_or(1.0);
-        // Within the matrix.
+        // The indices are within the matrix.
         normal.get((row, column)).copied().unwrap_or_default() / (length(row) * length(column))
     });
     let factor = unit.cholesky()?;
@@ -242,9 +249,9 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
     let mut estimates = Vec::with_capacity(terms);
     for (at, place) in places.iter().enumerate() {
         let length = lengths.get(at).copied().unwrap_or(1.0);
-        // As many solutions as places.
+        // There are as many solutions as places.
         let value = solved.get(at).copied().unwrap_or_default() / length;
-        // As many solutions as places.
+        // There are as many solutions as places.
         let error = (variance * inverse.get((at, at)).copied().unwrap_or_default()).sqrt() / length;
         log += match priors.get(*place) {
             Some(Prior::UpTo(most)) => log_between(-value / error, (most - value) / error) - most.ln(),
@@ -258,9 +265,9 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
     log.is_finite().then_some((log, estimates))
 }
 
-/// Logarithm of the probability that a standard normal variable is between two limits.
+/// Returns the logarithm of the probability that a standard normal variable lies between two limits.
 fn log_between(low: f64, high: f64) -> f64 {
-    // Of the two tails the one on the side of the interval keeps its digits.
+    // The tail on the side of the interval keeps its digits.
     let (near, far) = if low > 0.0 {
         (low, high)
     } else if high < 0.0 {
@@ -271,7 +278,7 @@ fn log_between(low: f64, high: f64) -> f64 {
     if near > 6.0 {
         return -0.5 * near * near - (near * (2.0 * PI).sqrt()).ln();
     }
-    // A standard deviation of one is allowed.
+    // A standard deviation of 1 is valid.
     let below = |z: f64| Normal::new(0.0, 1.0).map_or(0.5, |normal| normal.cdf(z));
     let between = if near > 0.0 { below(-near) - below(-far) } else { below(high) - below(low) };
     between.max(f64::MIN_POSITIVE).ln()

@@ -1,4 +1,4 @@
-//! Half swings of simulated systems whose laws are known, and a table of measured ones.
+//! Half swings of simulated systems with known laws, and a table of measured ones.
 
 use super::{HalfSwings, half_swings};
 use crate::data::observations::Observations;
@@ -14,7 +14,8 @@ type Effects = &'static [(&'static str, &'static [f64])];
 
 const OMEGA: f64 = 7.0 * std::f64::consts::PI;
 
-/// Half swings of a system released at 0.7 rad, 25 s at 260 Hz, through white noise and effects of the measuring chain.
+/// Returns the half swings of a system released at 0.7 rad, 25 s at 260 Hz, observed with white noise and
+/// effects of the measurement chain.
 fn witnessed(
     damping_ratio: f64,
     effects: &[(&str, &[f64])],
@@ -123,7 +124,7 @@ fn measured() {
     }
 }
 
-/// Evidence of each case below the folder `RIGS` (set when this is compiled), one line of JSON a case.
+/// Prints the evidence of each case below the folder `RIGS` (set at compile time), one line of JSON per case.
 #[test]
 #[ignore = "a bank to score elsewhere"]
 fn rigs() {
@@ -181,7 +182,7 @@ fn rigs() {
     }
 }
 
-/// As [`measured`]: records of known systems, with and without defects of the measuring chain.
+/// Like [`measured`], for records of known systems, with and without defects of the measurement chain.
 #[test]
 #[ignore = "a table to read"]
 fn simulated() {
@@ -212,10 +213,10 @@ fn simulated() {
     }
 }
 
-/// Nats from which on a law counts as found, and below which none is invented.
+/// Evidence in nats above which a law counts as found.
 const FOUND: f64 = 10.0;
 
-/// Laws of loss that a record's half swings find: dry, viscous, quadratic.
+/// Returns the laws of loss that a record's half swings find: dry, viscous, quadratic.
 fn laws_found(found: &HalfSwings) -> [bool; 3] {
     let w = &found.witness;
     [w.friction, w.viscous, w.drag].map(|nats| nats.unwrap() > 0.0)
@@ -238,7 +239,7 @@ fn each_law_of_loss_is_found_alone_and_in_pairs_and_none_is_invented() {
     }
 }
 
-/// 2·τ/k a half swing, and π·ζ of the amplitude.
+/// Dry friction takes 2·τ/k from the amplitude in each half swing, viscous damping takes the share π·ζ.
 #[test]
 fn losses_have_their_sizes() {
     let found = witnessed(0.003, &[("coulomb_friction", &[0.4])], 1e-3, &[], 3).witness;

@@ -1,51 +1,52 @@
 //! Turning points of a free swing, each from a local fit, tracked from one to the next.
 //!
-//! The local half period is carried along from turn to turn, so a frequency that changes with the amplitude is followed;
-//! no frequency is fixed but for the first turn, and there it is looked for within a factor of [`HINT`] of the expected one.
+//! The local half period is updated from turn to turn, so that the tracking follows a frequency that changes
+//! with the amplitude. Only the first turn needs a given frequency; it is searched for within a factor of
+//! [`HINT`] of the expected one.
 
 use crate::data::observations::Observations;
 use crate::noise::statistics::median;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
 
-/// A turning point of the motion.
+/// Turning point of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Turn {
     pub(crate) time_s: f64,
     pub(crate) value: f64,
-    /// Variances from the samples' scatter about the local fit.
+    /// Variances of value and time, from the scatter of the samples about the local fits.
     pub(crate) value_variance: f64,
     pub(crate) time_variance: f64,
 }
 
-/// Largest factor between the expected frequency and the one of the first swings.
+/// Largest factor between the expected frequency and that of the first swings.
 const HINT: f64 = 2.2;
-/// Frequencies at which the first swings are looked for.
+/// Number of frequencies tried for the first swings.
 const FREQUENCIES: usize = 32;
-/// Length of the stretch in which the first turn is looked for, in expected periods.
+/// Length of the stretch in which the first turn is searched for, in expected periods.
 const STRETCH: f64 = 3.0;
-/// Stretches that are looked at, at most.
+/// Largest number of stretches searched.
 const MOST_STRETCHES: usize = 40;
-/// Most samples of a stretch that are looked at.
+/// Largest number of samples used of a stretch.
 const MOST_SAMPLES: usize = 256;
-/// Half the width of the stretch around a turning point that is fitted, in periods.
+/// Half the width of the stretch fitted around a turning point, in periods.
 const HALF_WIDTH: f64 = 0.2;
-/// Largest distance of a turning point from where it is expected, in half periods.
+/// Largest distance of a turning point from its expected time, in half periods.
 const FARTHEST: f64 = 0.3;
-/// Longest stretch without a sample in a half swing, in half periods.
+/// Longest gap between samples in a half swing, in half periods.
 const LONGEST_GAP: f64 = 0.35;
-/// Turns in a row that may be missed before the motion counts as ended.
+/// Number of consecutive missed turns at which the motion counts as ended.
 const MOST_MISSED: usize = 4;
-/// Standard errors by which an amplitude has to stand out.
+/// Number of standard errors by which an amplitude has to exceed zero.
 const SMALLEST: f64 = 4.0;
-/// Weight of the last half period in the one that is carried along.
+/// Weight of the newest half period in the running estimate.
 const NEWEST: f64 = 0.4;
 /// Fewest samples for the five-term fit.
 const FEWEST_FULL: usize = 9;
 /// Tukey's constant for 95 % efficiency.
 const TUKEY: f64 = 4.685;
 
-/// Times and values of the samples that are used, and the largest rounding error's standard deviation.
+/// Times and values of the samples used, and the standard deviation of the rounding error.
 struct Samples {
     times: Vec<f64>,
     values: Vec<f64>,
@@ -65,16 +66,17 @@ impl Samples {
         pick(&self.times).into_iter().zip(pick(&self.values))
     }
 
-    /// Longest time without a sample between two moments.
+    /// Returns the longest time without a sample between two times.
     fn gap(&self, from: f64, to: f64) -> f64 {
         let inside = self.points(from, to).map(|point| point.0).chain([to]);
         inside.fold((from, 0.0_f64), |(last, gap), time| (time, gap.max(time - last))).1
     }
 }
 
-/// Runs of successive turning points of a record, alternating between top and bottom: no half swing in a run has a gap.
+/// Returns the runs of successive turning points of a record, alternating between maxima and minima. No half
+/// swing in a run has a gap. Empty if no swing stands out.
 ///
-/// `angular_frequency` in rad/s is a hint only. Empty where no swing stands out.
+/// `angular_frequency` in rad/s is only a hint.
 pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequency: f64) -> Vec<Vec<Turn>> {
     let pairs = record.times_s.iter().zip(&record.values).zip(kept);
     let (times, values) = pairs
@@ -91,12 +93,13 @@ pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequ
     runs(&samples, &turns)
 }
 
-/// Fit of a sine and a constant: squares that the sine takes away per sample, constant, cosine, sine.
+/// Fits a sine and a constant. Returns the decrease of the mean square by the sine, and the constant, cosine
+/// and sine coefficients.
 fn sinusoid(points: &[(f64, f64)], frequency: f64) -> Option<(f64, [f64; 3])> {
     let count = points.len();
     let middle = points.iter().map(|point| point.1).sum::<f64>() / count as f64;
     let design = DMatrix::from_fn(count, 3, |row, column| {
-        // A row for every point.
+        // There is a row for every point.
         let phase = frequency * points.get(row).map_or(0.0, |point| point.0);
         // Three columns, three terms.
         [1.0, phase.cos(), phase.sin()].get(column).copied().unwrap_or_default()
@@ -108,7 +111,7 @@ fn sinusoid(points: &[(f64, f64)], frequency: f64) -> Option<(f64, [f64; 3])> {
     Some(((values.norm_squared() - rest) / count as f64, [level + middle, cosine, sine]))
 }
 
-/// Time of a turning point in the stretch that swings most, and half the period there.
+/// Returns the time of a turning point in the stretch with the largest swing, and half the period there.
 fn first(samples: &Samples, angular_frequency: f64) -> Option<(f64, f64)> {
     let (begin, end) = (*samples.times.first()?, *samples.times.last()?);
     let expected = TAU / angular_frequency;
@@ -136,7 +139,7 @@ fn first(samples: &Samples, angular_frequency: f64) -> Option<(f64, f64)> {
             let frequency = angular_frequency * HINT.powf(part);
             let Some((power, [_, cosine, sine])) = sinusoid(&thinned, frequency) else { continue };
             if best.is_none_or(|(most, ..)| power > most) {
-                // The extreme nearest to the stretch's middle: a top or a bottom.
+                // The extreme nearest to the middle of the stretch: a maximum or a minimum.
                 let phase = sine.atan2(cosine);
                 let nearest = phase - PI * (phase / PI).round();
                 best = Some((power, middle + nearest / frequency, PI / frequency));
@@ -146,12 +149,12 @@ fn first(samples: &Samples, angular_frequency: f64) -> Option<(f64, f64)> {
     best.map(|(_, time, half)| (time, half))
 }
 
-/// A turning point as its local fit has it.
+/// Turning point found by a local fit.
 #[derive(Debug, Clone, Copy)]
 struct Local {
     time: f64,
     value: f64,
-    /// 1 for a top, −1 for a bottom.
+    /// 1 for a maximum, −1 for a minimum.
     sign: f64,
     half: f64,
     /// Standard deviation of a sample about the fit.
@@ -161,7 +164,7 @@ struct Local {
     time_leverage: f64,
 }
 
-/// Turning points from a first one on, forward or backward; `None` for one that is missed.
+/// Tracks turning points from a first one, forward or backward; `None` for a missed one.
 fn track(samples: &Samples, start: f64, half: f64, direction: f64) -> Vec<Option<Local>> {
     let (Some(&begin), Some(&end)) = (samples.times.first(), samples.times.last()) else { return Vec::new() };
     let Some(mut last) = local(samples, start, half, None) else { return Vec::new() };
@@ -194,17 +197,17 @@ fn track(samples: &Samples, start: f64, half: f64, direction: f64) -> Vec<Option
     turns
 }
 
-/// The turning point of a kind near a moment; `None` where there is no clear one.
+/// Returns the turning point with the given sign near a time; `None` if there is no clear one.
 fn local(samples: &Samples, expected: f64, half: f64, sign: Option<f64>) -> Option<Local> {
     let first = fit(samples, expected, half)?;
-    // The stretch is laid about the turn that a first fit finds.
+    // The stretch is centered on the turn that a first fit finds.
     let found = fit(samples, first.time, half)?;
     let is_near = (found.time - expected).abs() <= FARTHEST * half;
     (is_near && sign.is_none_or(|sign| sign == found.sign)).then_some(found)
 }
 
-/// Terms of the local fit at a phase, and their first and second derivatives: a sine with a constant, and a parabola
-/// beside it where there are samples enough.
+/// Returns the terms of the local fit at a phase, or their first or second derivatives: a constant, a sine,
+/// and a parabola that is used if there are enough samples.
 fn terms(phase: f64, derivative: usize) -> [f64; 5] {
     let (sine, cosine) = phase.sin_cos();
     match derivative {
@@ -214,7 +217,7 @@ fn terms(phase: f64, derivative: usize) -> [f64; 5] {
     }
 }
 
-/// The extreme of a robust local fit about a moment.
+/// Returns the extreme of a robust local fit about a time.
 fn fit(samples: &Samples, center: f64, half: f64) -> Option<Local> {
     let reach = 2.0 * HALF_WIDTH * half;
     let points: Vec<(f64, f64)> = samples
@@ -227,15 +230,15 @@ fn fit(samples: &Samples, center: f64, half: f64) -> Option<Local> {
     }
     let count = if points.len() >= FEWEST_FULL { 5 } else { 3 };
     let design = DMatrix::from_fn(points.len(), count, |row, column| {
-        // A row for every point.
+        // There is a row for every point.
         let phase = points.get(row).map_or(0.0, |point| point.0);
-        // There are five terms, of which the first three may be taken.
+        // There are five terms; the first three may be used alone.
         terms(phase, 0).get(column).copied().unwrap_or_default()
     });
     let values = DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
     let (solved, inverse, scatter) = robust(&design, &values, samples.rounding)?;
     let at = |phase: f64, derivative: usize| {
-        // There are five terms, of which the first three may be taken.
+        // There are five terms; the first three may be used alone.
         DVector::from_row_slice(terms(phase, derivative).get(..count).unwrap_or_default())
     };
     let mut phase = 0.0_f64;
@@ -261,7 +264,8 @@ fn fit(samples: &Samples, center: f64, half: f64) -> Option<Local> {
     })
 }
 
-/// Coefficients of a fit with Tukey's biweight, inverse of its normal matrix, and standard deviation of a sample.
+/// Returns the coefficients of a fit with Tukey's biweight, the inverse of its normal matrix, and the
+/// standard deviation of a sample.
 fn robust(
     design: &DMatrix<f64>,
     values: &DVector<f64>,
@@ -269,14 +273,14 @@ fn robust(
 ) -> Option<(DVector<f64>, DMatrix<f64>, f64)> {
     let (rows, columns) = design.shape();
     let mut weights = DVector::from_element(rows, 1.0);
-    // Two samples more than coefficients say nothing of which is wrong.
+    // Two samples more than coefficients cannot show which one is wrong.
     let rounds = if rows >= columns + 3 { 4 } else { 1 };
     let mut found = None;
     for _ in 0..rounds {
         let weighted = DMatrix::from_fn(rows, columns, |row, column| {
             // Rows and columns are those of the design.
             design.get((row, column)).copied().unwrap_or_default()
-                // A weight for every row.
+                // There is a weight for every row.
                 * weights.get(row).copied().unwrap_or_default()
         });
         let inverse = weighted.tr_mul(design).cholesky()?.inverse();
@@ -285,7 +289,7 @@ fn robust(
         let squares: f64 = rest.iter().zip(weights.iter()).map(|(rest, weight)| weight * rest * rest).sum();
         let freedom = (weights.sum() - columns as f64).max(1.0);
         let sizes: Vec<f64> = rest.iter().map(|rest| rest.abs()).collect();
-        // The median of what is left is too small by the share of the coefficients.
+        // The median of the residuals is too small by the share of the coefficients.
         let robust = 1.4826 * median(&sizes) * (rows as f64 / (rows as f64 - columns as f64).max(1.0)).sqrt();
         let scale = TUKEY * robust.max(rounding);
         found = Some((solved, inverse, (squares / freedom).sqrt()));
@@ -300,7 +304,7 @@ fn robust(
     found
 }
 
-/// Cuts turning points into runs without gaps, from the largest swing to the last that stands out.
+/// Cuts turning points into runs without gaps, from the largest swing to the last one that stands out.
 fn runs(samples: &Samples, turns: &[Option<Local>]) -> Vec<Vec<Turn>> {
     let scatters: Vec<f64> = turns.iter().flatten().map(|turn| turn.scatter).collect();
     let noise = median(&scatters).max(samples.rounding);
@@ -315,7 +319,7 @@ fn runs(samples: &Samples, turns: &[Option<Local>]) -> Vec<Vec<Turn>> {
         _ => None,
     };
     let amplitudes: Vec<Option<f64>> = turns.windows(2).map(amplitude).collect();
-    // What goes before the largest swing is the release.
+    // Turns before the largest swing belong to the release.
     let largest = amplitudes.iter().enumerate().filter_map(|(at, amplitude)| Some((at, (*amplitude)?)));
     let Some((start, _)) = largest.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))) else {
         return Vec::new();

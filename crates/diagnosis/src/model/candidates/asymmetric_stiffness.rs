@@ -1,10 +1,10 @@
-//! A spring that is stiffer to one side.
+//! Spring that is stiffer to one side.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// A spring that is stiffer to one side.
+/// Spring that is stiffer to one side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AsymmetricStiffness;
 

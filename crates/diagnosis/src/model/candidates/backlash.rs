@@ -4,7 +4,7 @@ use super::{CandidateLaw, EvidenceClass, Parameter, grid, secant};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Nominal, SystemEffect};
 
-/// Half widths to begin with, relative to the amplitude.
+/// Initial half widths, relative to the amplitude.
 const PLAY: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
 
 /// Play around the rest position: a half width, within the swing.
@@ -36,7 +36,7 @@ impl CandidateLaw for Backlash {
         grid(facts.amplitude, &PLAY, |half_width| vec![half_width])
     }
 
-    /// The shape is the parameter itself; the coefficient of its secant corrects it within reason.
+    /// The shape is the parameter itself; the coefficient of its secant corrects it within limits.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
         secant(shape, coefficients)
     }

@@ -1,4 +1,4 @@
-//! A clock whose rate changes.
+//! Clock whose rate changes.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
@@ -6,7 +6,7 @@ use crate::model::sensor::{Observed, Sensor};
 use dynamics::{Active, ChainEffect, Effect};
 use record::Quantity;
 
-/// A clock whose rate changes, by less than half over the longest record.
+/// Clock whose rate changes, by less than half over the longest record.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ClockDrift;
 
@@ -31,7 +31,8 @@ impl CandidateLaw for ClockDrift {
         true
     }
 
-    /// It moves what is observed by its time derivative, which an acceleration has not.
+    /// The effect acts by the time derivative of the observed quantity, which is not available for
+    /// accelerations.
     fn is_observed_in(&self, quantity: Quantity) -> bool {
         quantity != Quantity::Acceleration
     }
@@ -46,7 +47,7 @@ impl CandidateLaw for ClockDrift {
 
     /// A rate that is off by a constant factor is part of the calibration.
     fn stated(&self, active: &Active) -> Option<Vec<f64>> {
-        // A law that is stated has its parameter.
+        // A stated law has its parameter.
         Some(vec![active.value("change").unwrap_or_default()])
     }
 

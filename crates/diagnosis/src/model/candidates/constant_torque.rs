@@ -1,13 +1,13 @@
-//! A constant torque.
+//! Constant torque.
 //!
-//! On a linear spring it is a shift of the rest angle, which is part of the calibration, and gains nothing beside it. It shows where
-//! something else keeps its place: a play, a stop, a spring that bends.
+//! On a linear spring it shifts the rest angle, which is part of the calibration, and gains nothing beside
+//! it. It shows if another effect has a fixed place: a play, a stop, a nonlinear spring.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// A constant torque.
+/// Constant torque.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ConstantTorque;
 

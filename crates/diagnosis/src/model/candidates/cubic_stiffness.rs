@@ -1,10 +1,10 @@
-//! A spring that hardens or softens.
+//! Spring that hardens or softens.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// A spring that hardens or softens.
+/// Spring that hardens or softens.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CubicStiffness;
 

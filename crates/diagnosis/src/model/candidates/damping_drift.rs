@@ -1,10 +1,10 @@
-//! A damping that drifts.
+//! Damping that drifts.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// A damping that drifts.
+/// Damping that drifts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DampingDrift;
 

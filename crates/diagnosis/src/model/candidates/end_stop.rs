@@ -1,13 +1,13 @@
-//! An elastic stop at one end of the swing.
+//! Elastic stop at one end of the swing.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// Places to begin with: distances from either end of the swing, relative to its span.
+/// Initial positions: distances from either end of the swing, relative to its span.
 const STOPS: [f64; 5] = [0.004, 0.015, 0.05, 0.12, 0.25];
 
-/// An elastic stop at one end of the swing: its place, its stiffness and its dissipation.
+/// Elastic stop at one end of the swing: its position, its stiffness and its dissipation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EndStop;
 

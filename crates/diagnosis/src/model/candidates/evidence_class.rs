@@ -1,36 +1,36 @@
-//! Classes of effects that explain alike.
+//! Classes of effects that act alike.
 
-/// A class of effects that explain alike: a record tells classes apart before it tells kinds within one.
+/// Class of effects that act alike: a record tells classes apart more easily than kinds within one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum EvidenceClass {
     /// Dry friction of any kind.
     Friction,
-    /// A restoring torque beside the spring's own.
+    /// Restoring torque beside the spring's own.
     Restoring,
-    /// A law of damping beside the viscous one.
+    /// Law of damping beside the viscous one.
     Damping,
     /// Play and stops.
     Play,
-    /// A spring or a clock that drifts.
+    /// Spring or clock that drifts.
     Drift,
-    /// A body tied on by a spring.
+    /// Body coupled by a spring.
     SecondBody,
-    /// A torque that repeats in time.
+    /// Torque that repeats in time.
     Forcing,
-    /// A constant torque.
+    /// Constant torque.
     Preload,
     /// Delays and limits of the input.
     Actuator,
-    /// What the sensor does to values.
+    /// Effects of the sensor on values.
     Sensor,
-    /// What the host does to time stamps.
+    /// Effects of the host on time stamps.
     Stamps,
-    /// A torque without a name: it takes the place of others, and is no answer itself.
+    /// Torque without a name: it competes with named effects but is no answer itself.
     Unnamed,
 }
 
 impl EvidenceClass {
-    /// The public id.
+    /// Returns the public id.
     pub(crate) fn id(self) -> &'static str {
         match self {
             Self::Friction => "friction",

@@ -1,36 +1,40 @@
-//! A second body tied on by a spring.
+//! Second body coupled by a spring.
 
 use super::{CandidateLaw, EvidenceClass, Lines, MainMode, Mode, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Moment, Nominal, SystemEffect, Values};
 
-/// A second mode's decay over the longest record as a logarithm at least, and its damping ratio at most.
+/// Minimum decay of a second mode over the longest record, as a logarithm, and its maximum damping ratio.
 const LEAST_DECAY: f64 = 0.3;
 const MOST_DAMPED: f64 = 0.7;
 
-/// A second body's part of the inertia: smaller ones move nothing, larger ones are the body themselves.
+/// Limits of a second body's inertia relative to the first one's: smaller bodies move nothing, larger ones
+/// take the first body's place.
 const SMALLEST_BODY: f64 = 1e-9;
 const LARGEST_BODY: f64 = 1e2;
 
-/// Factor in the decay rate, either way, beyond which a line at a harmonic is another body's. Those by which a second
-/// body stands in for a sensor that is not linear decayed 0.9 to 1.2 times as fast as the harmonic (training banks).
+/// Factor in the decay rate, in either direction, beyond which a line at a harmonic belongs to another body.
+/// The second bodies that imitated a nonlinear sensor decayed 0.9 to 1.2 times as fast as the harmonic
+/// (training banks).
 const ANOTHER_DECAY: f64 = 1.5;
 
-/// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a
-/// segment, its part of the inertia at most.
+/// Initial second body: the number of lines tried, the phase in radians by which it may put the swing off
+/// over a segment, and its maximum share of the inertia.
 const MODES: usize = 3;
 const OUT_OF_PHASE: f64 = 0.1;
 const FIRST_BODY: f64 = 0.02;
 
-/// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and
-/// over a long segment a body that is not yet where it belongs would lose count of the swings.
+/// Returns a second body's initial share of the inertia. The body lowers the swing's frequency by half its
+/// share, and over a long segment a body that does not have its final frequency yet would lose count of the
+/// swings.
 fn first_body(facts: &Scales, longest_span: f64) -> f64 {
     let phase = facts.frequency * longest_span;
     (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(FIRST_BODY)
 }
 
-/// A second body tied on by a spring: its inertia I, and its stiffness k and damping c as frequency and decay rate on a body
-/// at rest, k = I·ω² and c = 2·I·r. These are what a record shows, and no step makes the motion faster than its samples.
+/// Second body coupled by a spring: its inertia I, and its stiffness k and damping c, fitted as frequency ω
+/// and decay rate r on a body at rest, k = I·ω² and c = 2·I·r. A record shows these directly, and no step
+/// makes the motion faster than its samples.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FlexibleCoupling;
 
@@ -95,17 +99,19 @@ impl CandidateLaw for FlexibleCoupling {
         ]
     }
 
-    /// A second body that hardly swings at all is a drift, and one whose line in the spectrum lies within its
-    /// own half-width of the swing's or of a harmonic, or comes to less than half a turn beside it, is no second line: it shows a damping or
-    /// a force that changes with amplitude, or clocks that differ. Only where it is struck once, at a record's beginning, does its decay tell it
-    /// from the harmonic of order n: that one decays n times as fast as the swing. At the ends of its
-    /// parameters' ranges one whose mode does not decay within the records is a forcing, one much slower than
-    /// the swing a drift.
+    /// Returns `false` if the second body hardly swings at all, which is a drift, or if its line is not clear
+    /// of the swing's line or a harmonic: it lies within its own half-width, or less than half a turn away
+    /// over the record. Such a line shows a damping or a force that changes with amplitude, or clocks that
+    /// differ. Only if the body is struck once, at the start of a record, does its decay tell it from the
+    /// harmonic of order n, which decays n times as fast as the swing.
+    ///
+    /// At the limits of its parameters' ranges, a second body whose mode does not decay within the records is
+    /// a forcing, and one that is much slower than the swing is a drift.
     fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
         let &[body, mode, rate] = fitted else { return true };
         let line = mode * (1.0 + body / swing.inertia).sqrt();
         let order = (line / swing.frequency).round().max(1.0);
-        // Beside the swing itself it has to stand clear of the swing's own line too.
+        // Beside the swing itself the line has to be clear of the swing's own line too.
         let width = if order > 1.0 { rate } else { rate.max(swing.decay_rate) };
         let apart = (line - order * swing.frequency).abs() > width.max(0.5 * swing.resolution);
         let harmonic = order * swing.decay_rate;
@@ -123,7 +129,7 @@ impl CandidateLaw for FlexibleCoupling {
         [0.0, 0.0]
     }
 
-    /// Its frequencies come from the residual, and it begins a fit there without columns.
+    /// The frequencies come from the residual; a fit begins at them without columns.
     fn shapes(&self, _facts: &Scales) -> Vec<Vec<f64>> {
         Vec::new()
     }

@@ -1,4 +1,4 @@
-//! The weight of an unbalanced arm.
+//! Weight of an unbalanced arm.
 
 use super::{CandidateLaw, EvidenceClass, Parameter, Polar};
 use crate::data::scales::Scales;
@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 const POLAR: Polar = Polar { size: 0, angle: 1 };
 
-/// The weight of an unbalanced arm: torque and angle, fitted as a Cartesian pair.
+/// Weight of an unbalanced arm: torque and angle, fitted as a Cartesian pair.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gravity;
 
@@ -32,7 +32,7 @@ impl CandidateLaw for Gravity {
         false
     }
 
-    /// A sine of the coordinate: a length is not the argument of one.
+    /// The torque is a sine of the coordinate, which must therefore be an angle.
     fn applies(&self, _facts: &Scales, nominal: &Nominal) -> bool {
         nominal.coordinate() == Coordinate::Angle
     }

@@ -6,14 +6,15 @@ use crate::data::scales::Scales;
 use crate::model::contact::bent;
 use dynamics::{Effect, Moment, SystemEffect, Values};
 
-/// Displacements to begin with, relative to the amplitude.
+/// Initial displacements, relative to the amplitude.
 const BENDING: [f64; 4] = [0.005, 0.02, 0.06, 0.2];
 
-/// Displacement over the largest deflection, at most. What bends further hardly slides in most of a record: it is a spring and
-/// a loss that grow with the amplitude, which other laws are too.
+/// Maximum displacement over the largest deflection. A contact that bends further hardly slides in most of a
+/// record: it acts as a spring and a loss that grow with the amplitude, as other laws do.
 const MOST_BENT: f64 = 0.3;
 
-/// Friction with a pre-sliding spring: the torque once sliding, and the displacement over which it builds up.
+/// Friction with a pre-sliding spring: the torque while sliding, and the displacement over which it builds
+/// up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hysteresis;
 
@@ -69,7 +70,7 @@ impl CandidateLaw for Hysteresis {
     }
 }
 
-/// −z along a motion, for Dahl's law: exact between samples of a motion in one direction.
+/// Returns −z of Dahl's law along a motion: exact between samples if the motion does not reverse.
 fn bending(displacement: f64, along: &Along<'_>) -> Vec<f64> {
     let position = along.position;
     let rest = along.nominal.rest_angle + along.facts.rest_moved;

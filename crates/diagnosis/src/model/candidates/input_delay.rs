@@ -1,13 +1,13 @@
-//! An input that acts late.
+//! Input that acts late.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid, held, secant};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Nominal, SystemEffect};
 
-/// Delays to begin with, relative to a radian of the swing.
+/// Initial delays, relative to the time of a radian of the swing.
 const DELAYS: [f64; 2] = [0.01, 0.1];
 
-/// An input that acts late, by less than a radian of the swing.
+/// Input that acts late, by less than the time of a radian of the swing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InputDelay;
 
@@ -36,17 +36,17 @@ impl CandidateLaw for InputDelay {
         grid(1.0 / facts.frequency, &DELAYS, |delay| vec![delay])
     }
 
-    /// What the input's torque of before would change.
+    /// The column is the response to the difference between the delayed and the present torque.
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         let &[delay] = shape else { return Vec::new() };
         let shifted = along.times.iter().zip(along.input).map(|(time, now)| {
-            // Where nothing acts nothing is late.
+            // Without an input nothing is delayed.
             along.command.map_or(0.0, |input| along.nominal.input_gain * held(input, time - delay) - now)
         });
         vec![(along.respond)(&shifted.collect::<Vec<f64>>())]
     }
 
-    /// The shape is the parameter itself; the coefficient of its secant corrects it within reason.
+    /// The shape is the parameter itself; the coefficient of its secant corrects it within limits.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
         secant(shape, coefficients)
     }

@@ -1,13 +1,13 @@
-//! An input whose torque is limited.
+//! Input whose torque is limited.
 
 use super::{CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Nominal, SystemEffect};
 
-/// Limits to begin with, relative to the input's largest torque.
+/// Initial limits, relative to the input's largest torque.
 const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
 
-/// An input whose torque is limited.
+/// Input whose torque is limited.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InputSaturation;
 

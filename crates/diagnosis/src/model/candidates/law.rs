@@ -1,4 +1,4 @@
-//! What a candidate is to a diagnosis.
+//! Interface of a candidate to the rest of the diagnosis.
 
 use super::{Along, EvidenceClass, Lines, MainMode, Parameter};
 use crate::data::scales::Scales;
@@ -6,57 +6,61 @@ use crate::model::sensor::Sensor;
 use dynamics::scalar::Dual;
 use dynamics::{Active, Coefficients, Effect, Moment, Nominal, Quantity, Values};
 
-/// An effect as a diagnosis fits it.
+/// Effect in the form that a diagnosis fits.
 ///
-/// Required is what no default could be right for: which effect it is, its class, its parameters, whether its
-/// linear coefficients have a sign. The rest has a default that is right for a torque which depends smoothly on the state
-/// and is linear in its one parameter, so that a file states what is special about its effect and nothing else.
+/// The required methods have no sensible default: the effect, its class, its parameters, and the sign of its
+/// linear coefficients. All others default to what is right for a torque that depends smoothly on the state
+/// and is linear in its one parameter. So an effect's file states only what is special about it.
 pub(crate) trait CandidateLaw: Sync {
-    /// The effect of the dynamics that it fits; id, budget class, units and literature are those of its description.
+    /// Returns the effect of the dynamics that is fitted. Its description gives id, budget class, units and
+    /// literature.
     fn effect(&self) -> Effect;
 
-    /// The class of effects that explain alike to which it belongs.
+    /// Returns the class of effects that act alike to which this one belongs.
     fn evidence_class(&self) -> EvidenceClass;
 
-    /// Parameters as a fit moves them, with bounds; [`Self::values`] turns them into the law's.
+    /// Returns the fit parameters with bounds; [`Self::values`] converts them to those of the law.
     fn parameters(&self, facts: &Scales) -> Vec<Parameter>;
 
-    /// Whether the coefficients of its [`Self::columns`] cannot be negative.
+    /// Returns `true` if the coefficients of [`Self::columns`] cannot be negative.
     fn is_non_negative(&self) -> bool;
 
-    /// Whether it can sit where it likes on a record and soak up what no law explains: a stop at any deflection, a line at
-    /// any frequency, a drift. Default: it cannot; its shape follows from the motion.
+    /// Returns `true` if the effect is flexible: it can act anywhere on a record and absorb what no law
+    /// explains, such as a stop at any deflection, a line at any frequency, or a drift. Default: `false`; its
+    /// shape follows from the motion.
     fn is_flexible(&self) -> bool {
         false
     }
 
-    /// Whether every mechanism may be expected to have it: dry friction, drag, a weight, a spring that bends. Default: not.
+    /// Returns `true` if any mechanism may have the effect: dry friction, drag, a weight, a nonlinear spring.
+    /// Default: `false`.
     fn is_plain(&self) -> bool {
         false
     }
 
-    /// The class that a law without a name belongs to by its mechanism: a set with it is no set without the class. Default: none.
+    /// Returns the class that an unnamed law belongs to by its mechanism: a set with the law does not count
+    /// as a set without the class. Default: `None`.
     fn stands_for(&self) -> Option<EvidenceClass> {
         None
     }
 
-    /// Whether it takes one of the places that a set has. Default: it does.
+    /// Returns `true` if the effect counts toward the size of a set. Default: `true`.
     fn counts(&self) -> bool {
         true
     }
 
-    /// Whether it can act on these records at all. Default: on all.
+    /// Returns `true` if the effect can act on these records at all. Default: `true`.
     fn applies(&self, _facts: &Scales, _nominal: &Nominal) -> bool {
         true
     }
 
-    /// Whether a fit of records of a quantity can follow it. Default: of any.
+    /// Returns `true` if a fit of records of a quantity can include the effect. Default: `true`.
     fn is_observed_in(&self, _quantity: record::Quantity) -> bool {
         true
     }
 
-    /// Whether the motion depends smoothly on its parameters. Default: as the law's description says; what a fit follows in
-    /// the measuring chain leaves the motion as it is.
+    /// Returns `true` if the motion depends smoothly on the effect's parameters. Default: as the law's
+    /// description says; an effect of the measurement chain does not change the motion.
     fn is_smooth(&self) -> bool {
         match self.effect() {
             Effect::System(effect) => effect.description().smooth,
@@ -64,23 +68,25 @@ pub(crate) trait CandidateLaw: Sync {
         }
     }
 
-    /// Ids of effects that it is easily confused with. Default: those of its description.
+    /// Returns the ids of effects that this one is easily confused with. Default: those of its description.
     fn resembles(&self) -> &'static [&'static str] {
         self.effect().description().confused_with
     }
 
-    /// The candidate that it is at one of its own sizes. A set never holds both. Default: none.
+    /// Returns the candidate that this one becomes at one of its own sizes. A set never holds both. Default:
+    /// `None`.
     fn generalizes(&self) -> Option<&'static dyn CandidateLaw> {
         None
     }
 
-    /// The simpler candidate that it tends to at an end of its shape, with the same first parameter. Default: the one
-    /// that it generalizes.
+    /// Returns the simpler candidate that this one tends to at an end of its shape, with the same first
+    /// parameter. Default: the one that it generalizes.
     fn tends_to(&self) -> Option<&'static dyn CandidateLaw> {
         self.generalizes()
     }
 
-    /// Quantity that a fitted parameter measures. Default: what the description says of the law's parameter in this place.
+    /// Returns the quantity that a fit parameter measures. Default: that of the law's parameter at the same
+    /// index.
     fn quantity(&self, index: usize) -> Quantity {
         self.effect()
             .description()
@@ -89,51 +95,57 @@ pub(crate) trait CandidateLaw: Sync {
             .map_or(Quantity::Ratio, |parameter| parameter.quantity)
     }
 
-    /// The law's parameters that a fit moves, of an effect that a nominal simulator has; none where this one cannot be
-    /// fitted. Default: all of them.
+    /// Returns the law's parameters that a fit moves, of an effect that a nominal simulator has; `None` if
+    /// this one cannot be fitted. Default: all of them.
     fn stated(&self, active: &Active) -> Option<Vec<f64>> {
         Some(active.values().to_vec())
     }
 
-    /// The law's parameters from a fit's. Default: the same.
+    /// Converts fit parameters to those of the law. Default: the same.
     fn values(&self, fitted: &[f64]) -> Vec<f64> {
         fitted.to_vec()
     }
 
-    /// A fit's parameters from the law's: the inverse of [`Self::values`].
+    /// Converts the law's parameters to fit parameters: the inverse of [`Self::values`].
     fn fitted(&self, values: &[f64]) -> Vec<f64> {
         values.to_vec()
     }
 
-    /// Derivatives of [`Self::values`]: row, column and value of what differs from the unit matrix.
+    /// Returns the derivatives of [`Self::values`]: row, column and value of each entry that differs from the
+    /// unit matrix.
     fn slopes(&self, _fitted: &[f64]) -> Vec<(usize, usize, f64)> {
         Vec::new()
     }
 
-    /// Whether fitted values are what the effect's name says, beside a swing. Default: always.
+    /// Returns `true` if the effect with these fit parameters deserves its name, beside a swing. Default:
+    /// `true`.
     fn is_itself(&self, _fitted: &[f64], _swing: &MainMode) -> bool {
         true
     }
 
-    /// Number of hidden state variables that a segment in the middle of a record cannot know and has to fit. Default: none.
+    /// Returns the number of hidden state variables that are unknown at the start of a segment in the middle
+    /// of a record and have to be fitted. Default: 0.
     fn free_hidden(&self) -> usize {
         0
     }
 
-    /// Place of the displacement over which a contact bends before it slides, among its parameters. Its hidden state is then
-    /// that of a steady swing where a segment begins in the middle of a record. Default: no such contact.
+    /// Returns the index, among the parameters, of the displacement over which a contact bends before it
+    /// slides. In a segment in the middle of a record, its hidden state starts as that of a steady swing.
+    /// Default: `None`, no such contact.
     fn bending_displacement(&self) -> Option<usize> {
         None
     }
 
-    /// Whether its torque is a weight's: it moves the equilibrium, adds to the stiffness against small swings, and turns with
-    /// the mount; its two fitted parameters are both parts of the torque. Default: it is not.
+    /// Returns `true` if the torque is that of a weight: it moves the equilibrium, adds to the stiffness
+    /// against small swings, and turns with the mount; its two fit parameters are both components of the
+    /// torque. Default: `false`.
     fn is_weight(&self) -> bool {
         false
     }
 
-    /// Stiffness −∂τ/∂θ and damping −∂τ/∂θ̇ that it adds at a moment, for small deviations of the motion. Default: the
-    /// law's own derivatives at the given hidden state; none for the measuring chain.
+    /// Returns the stiffness −∂τ/∂θ and the damping −∂τ/∂θ̇ that the effect adds at a moment, for small
+    /// deviations of the motion. Default: the law's own derivatives at the given hidden state; zero for the
+    /// measurement chain.
     fn stiffness_and_damping(&self, values: &Values<f64>, moment: &Moment<f64>, _facts: &Scales) -> [f64; 2] {
         match self.effect() {
             Effect::System(effect) => {
@@ -145,37 +157,38 @@ pub(crate) trait CandidateLaw: Sync {
         }
     }
 
-    /// The shapes that it is tried at: parameters, as the fit moves them, with unit coefficients. Default: its only
-    /// parameter is its coefficient.
+    /// Returns the shapes at which the effect is tried: fit parameters with unit coefficients. Default: its
+    /// only parameter is its coefficient.
     fn shapes(&self, _facts: &Scales) -> Vec<Vec<f64>> {
         vec![vec![1.0]]
     }
 
-    /// The same for a fit whose residual can be looked at. Default: [`Self::shapes`].
+    /// Returns the shapes given the residual of a fit. Default: [`Self::shapes`].
     fn shapes_for(&self, facts: &Scales, _residual: &dyn Lines) -> Vec<Vec<f64>> {
         self.shapes(facts)
     }
 
-    /// Whether its shapes are the best of as many as the residual has frequencies, which a chance gain has to
-    /// outdo. Default: they are not chosen from the residual.
+    /// Returns `true` if the shapes are the best of as many as the residual has frequencies; their gain then
+    /// has to exceed the best one by chance. Default: `false`, they are not chosen from the residual.
     fn is_chosen_by_frequency(&self) -> bool {
         false
     }
 
-    /// Parameters to begin a fit at, with about what each would take away of the squares, for an effect that no columns
-    /// stand for. Default: none; its columns say it.
+    /// Returns parameters at which a fit begins, each with its approximate gain in squares, for an effect
+    /// without columns. Default: none.
     fn starts(&self, _facts: &Scales, _inertia: f64, _residual: &dyn Lines) -> Vec<(Vec<f64>, f64)> {
         Vec::new()
     }
 
-    /// The law's values of which each column is the torque's response, at a shape. Default: the shape itself.
+    /// Returns the law's values whose torque responses are the columns at a shape. Default: the shape itself.
     fn unit_values(&self, shape: &[f64], _facts: &Scales) -> Vec<Vec<f64>> {
         vec![shape.to_vec()]
     }
 
-    /// The first-order changes of the observed values, by each of its linear coefficients, at a shape. Default: the responses
-    /// to the law's own torque at [`Self::unit_values`]. A candidate of the measuring chain, which has no torque, states its
-    /// own: without them it never enters a set.
+    /// Returns the first-order changes of the observed values by each of the linear coefficients, at a shape.
+    /// Default: the responses to the law's own torque at [`Self::unit_values`]. A candidate of the
+    /// measurement chain has no torque and has to provide its own columns: without them it never enters a
+    /// set.
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         match self.effect() {
             Effect::System(effect) => {
@@ -186,13 +199,13 @@ pub(crate) trait CandidateLaw: Sync {
         }
     }
 
-    /// Places of its linear parameters among all, one for each of its columns. Default: the first.
+    /// Returns the indices of the linear parameters among all, one for each column. Default: the first.
     fn linear_places(&self) -> &'static [usize] {
         &[0]
     }
 
-    /// The parameters that the coefficients of its columns stand for, at a shape. Default: the shape with the coefficients
-    /// at [`Self::linear_places`].
+    /// Returns the parameters that the coefficients of the columns stand for, at a shape. Default: the shape
+    /// with the coefficients at [`Self::linear_places`].
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
         let mut parameters = shape.to_vec();
         for (&place, coefficient) in self.linear_places().iter().zip(coefficients) {
@@ -203,28 +216,30 @@ pub(crate) trait CandidateLaw: Sync {
         parameters
     }
 
-    /// Adds what it does to readings to a sensor. Default: nothing; it acts in the system.
+    /// Adds the effect on readings to a sensor. Default: nothing, since the effect acts in the system.
     fn read(&self, _values: &[f64], _sensor: &mut Sensor) {}
 
-    /// Place of the derivative by a parameter in [`crate::model::sensor::Observed::by_parameter`]. Default: none; readings depend
-    /// on the parameter by way of the motion.
+    /// Returns the index of the derivative by a parameter in
+    /// [`crate::model::sensor::Observed::by_parameter`]. Default: `None`; readings depend on the parameter by
+    /// way of the motion.
     fn sensor_derivative(&self, _parameter: usize) -> Option<usize> {
         None
     }
 
-    /// Whether readings stay behind the motion by its one parameter: see [`crate::measurement::encoder_hysteresis`]. Default: they
-    /// do not.
+    /// Returns `true` if readings lag behind the motion by the effect's one parameter: see
+    /// [`crate::measurement::encoder_hysteresis`]. Default: `false`.
     fn holds_readings(&self) -> bool {
         false
     }
 
-    /// Name of the law's parameter that is the sensor's step, which shows in the values without a fit. Default: none.
+    /// Returns the name of the law's parameter that is the sensor's step, which the values show without a
+    /// fit. Default: `None`.
     fn step_parameter(&self) -> Option<&'static str> {
         None
     }
 }
 
-/// The moment with derivatives by position and velocity, in a region.
+/// Returns the moment with derivatives by position and velocity, in a region.
 fn differentiated(moment: &Moment<f64>, region: i8) -> Moment<Dual<2>> {
     let constant = Dual::<2>::from;
     let c = &moment.nominal;
@@ -246,12 +261,13 @@ fn differentiated(moment: &Moment<f64>, region: i8) -> Moment<Dual<2>> {
     }
 }
 
-/// Values on a grid relative to a scale, each made into a shape.
+/// Scales the values of a grid and makes each into a shape.
 pub(crate) fn grid(scale: f64, parts: &[f64], shape: impl Fn(f64) -> Vec<f64>) -> Vec<Vec<f64>> {
     parts.iter().map(|part| shape(part * scale)).collect()
 }
 
-/// Parameters of an effect that is its own shape: corrected by the coefficient of its secant, within reason.
+/// Returns the parameters of an effect that is its own shape: corrected by the coefficient of its secant,
+/// within limits.
 pub(crate) fn secant(shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
     shape.iter().zip(coefficients).map(|(size, coefficient)| size * coefficient.clamp(0.3, 3.0)).collect()
 }

@@ -1,19 +1,20 @@
-//! The motion that a second body or a forcing is told from.
+//! Main motion, from which a second body or a forcing has to differ.
 
 use crate::data::scales::Repeats;
 
-/// The motion that a second body or a forcing is told from.
+/// Main motion, from which a second body or a forcing has to differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MainMode {
     /// Angular frequency in rad/s.
     pub(crate) frequency: f64,
-    /// Decay rate of its amplitude in 1/s.
+    /// Decay rate of the amplitude in 1/s.
     pub(crate) decay_rate: f64,
     pub(crate) inertia: f64,
-    /// Angular frequencies that the longest record is too short to tell apart: lines that close come to less than a turn between them.
+    /// Difference of angular frequencies that the longest record is too short to resolve: over the record,
+    /// lines that close differ by less than a turn.
     pub(crate) resolution: f64,
-    /// Whether each record has one start state, at its beginning.
+    /// `true` if each record has one start state, at its beginning.
     pub(crate) starts_once: bool,
-    /// How a driven motion repeats.
+    /// Repetition of a driven motion; `None` if it does not repeat.
     pub(crate) repeats: Option<Repeats>,
 }

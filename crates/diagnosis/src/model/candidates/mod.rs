@@ -1,27 +1,31 @@
-//! What a simulator may lack, as a diagnosis fits it: one file for each effect.
+//! Effects that a simulator may lack, in the form that a diagnosis fits: one file for each effect.
 //!
-//! Everything that a diagnosis knows of an effect stands in the effect's file, as its [`CandidateLaw`]: what its parameters are
-//! and how far they may go, on which records it can act, at which shapes it is tried and what it would change to
-//! first order, what it is confused with. The rest of the crate asks a [`Candidate`] and names no effect.
+//! Everything that a diagnosis knows of an effect is in the effect's file, as its [`CandidateLaw`]: its
+//! parameters and their bounds, the records on which it can act, the shapes at which it is tried, its
+//! first-order changes, and the effects it is confused with. The rest of the crate uses a [`Candidate`] and
+//! names no effect.
 //!
 //! # Adding an effect
-//! The effect's law in `dynamics` (a file and its lines, see `dynamics::registry`) says what it does. Here it takes:
+//! The effect's law in `dynamics` (a file and its lines, see `dynamics::registry`) defines its dynamics. Here
+//! it needs:
 //!
-//! 1. `candidates/NAME.rs`: a unit struct with a [`CandidateLaw`]. Required are the effect, its class, its parameters with
-//!    bounds, and whether its coefficients have a sign; [`CubicStiffness`](cubic_stiffness::CubicStiffness) has these and
-//!    nothing else. Defaults suit a torque that is smooth and linear in its one parameter: its columns are then the
-//!    responses to the law's own torque. One with a shape besides gives [`shapes`](CandidateLaw::shapes) and
-//!    [`linear_places`](CandidateLaw::linear_places), as [`EndStop`](end_stop::EndStop) does; one that is fitted in
-//!    other numbers than its law's gives [`values`](CandidateLaw::values), [`fitted`](CandidateLaw::fitted) and
-//!    [`slopes`](CandidateLaw::slopes), as [`StribeckFriction`](stribeck_friction::StribeckFriction) does.
+//! 1. `candidates/NAME.rs`: a unit struct with a [`CandidateLaw`]. Required are the effect, its class, its
+//!    parameters with bounds, and whether its coefficients have a sign;
+//!    [`CubicStiffness`](cubic_stiffness::CubicStiffness) has these and nothing else. The defaults suit a
+//!    torque that is smooth and linear in its one parameter: its columns are then the responses to the law's
+//!    own torque. An effect with a shape also defines [`shapes`](CandidateLaw::shapes) and
+//!    [`linear_places`](CandidateLaw::linear_places), as [`EndStop`](end_stop::EndStop) does. An effect whose
+//!    fit parameters differ from the law's defines [`values`](CandidateLaw::values),
+//!    [`fitted`](CandidateLaw::fitted) and [`slopes`](CandidateLaw::slopes), as
+//!    [`StribeckFriction`](stribeck_friction::StribeckFriction) does.
 //! 2. Its module below, and its line in [`REGISTRY`].
 //!
-//! Search, evidence, intervals, shares of the gap and the repaired simulator follow. A test of the whole program adds an
-//! effect in this way, and diagnoses it.
+//! Search, evidence, intervals, shares of the gap and the repaired simulator follow. A test of the whole
+//! program adds an effect in this way and diagnoses it.
 //!
-//! An effect of the measuring chain gives its [`columns`](CandidateLaw::columns), and [`read`](CandidateLaw::read) with
-//! [`sensor_derivative`](CandidateLaw::sensor_derivative): what it does to a reading stands in [`crate::model::sensor`], where all
-//! of a sensor's effects are put in their physical order.
+//! An effect of the measurement chain defines [`columns`](CandidateLaw::columns), and
+//! [`read`](CandidateLaw::read) with [`sensor_derivative`](CandidateLaw::sensor_derivative). Its action on a
+//! reading is in [`crate::model::sensor`], where all effects of a sensor are applied in their physical order.
 
 mod along;
 pub(crate) mod asymmetric_stiffness;
@@ -66,7 +70,7 @@ pub(crate) use position_torque::PositionTorque;
 pub(crate) use unlisted_damping::UnlistedDamping;
 pub(crate) use unlisted_stiffness::UnlistedStiffness;
 
-/// Every effect that can be named by a fit, in the order in which sets and answers list them.
+/// Every effect that a fit can name, in the order in which sets and answers list them.
 pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&coulomb_friction::CoulombFriction),
     Candidate::new(&stribeck_friction::StribeckFriction),

@@ -1,4 +1,4 @@
-//! A torque that repeats in time.
+//! Torque that repeats in time.
 
 use super::{CandidateLaw, EvidenceClass, Lines, MainMode, Parameter, Polar};
 use crate::data::scales::Scales;
@@ -7,10 +7,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 const POLAR: Polar = Polar { size: 0, angle: 2 };
 
-/// Number of lines of the residual that it is tried at.
+/// Number of lines of the residual at which the effect is tried.
 const LINES: usize = 3;
 
-/// A torque that repeats in time: torque and phase, fitted as a Cartesian pair, and frequency.
+/// Torque that repeats in time: torque and phase, fitted as a Cartesian pair, and frequency.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PeriodicForcing;
 
@@ -52,7 +52,7 @@ impl CandidateLaw for PeriodicForcing {
         POLAR.slopes(fitted)
     }
 
-    /// Its frequencies come from the residual.
+    /// The frequencies come from the residual.
     fn shapes(&self, _facts: &Scales) -> Vec<Vec<f64>> {
         Vec::new()
     }
@@ -61,8 +61,8 @@ impl CandidateLaw for PeriodicForcing {
         residual.steady(LINES).into_iter().map(|frequency| vec![1.0, frequency, 0.0]).collect()
     }
 
-    /// Whatever depends on a motion that repeats has lines at multiples of its frequency: a forcing there cannot be told from
-    /// any law that the model lacks.
+    /// Everything that depends on a repeating motion has lines at multiples of its frequency. A forcing there
+    /// cannot be told from any law that the model lacks.
     fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
         fitted.get(1).is_none_or(|frequency| !swing.repeats.is_some_and(|own| own.has(*frequency)))
     }

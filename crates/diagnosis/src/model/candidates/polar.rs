@@ -1,8 +1,8 @@
 //! Laws with a size and an angle, fitted as a Cartesian pair.
 
-/// Places of a size and an angle among a law's parameters.
+/// Indices of a size and an angle among a law's parameters.
 ///
-/// Where a law has both, a fit moves (size·cos, size·sin): the law is linear in the pair, and no angle winds.
+/// A fit moves the pair (size·cos, size·sin) instead: the law is linear in it, and no angle winds up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Polar {
     pub(crate) size: usize,
@@ -10,12 +10,12 @@ pub(crate) struct Polar {
 }
 
 impl Polar {
-    /// Size and angle from the fitted pair; the other values are unchanged.
+    /// Converts the fitted pair to size and angle; the other values are unchanged.
     pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
         self.replaced(fitted, |p, q| (p.hypot(q), q.atan2(p)))
     }
 
-    /// The fitted pair from size and angle: the inverse of [`Self::values`].
+    /// Converts size and angle to the fitted pair: the inverse of [`Self::values`].
     pub(crate) fn fitted(self, values: &[f64]) -> Vec<f64> {
         self.replaced(values, |length, turned| {
             let (sine, cosine) = turned.sin_cos();
@@ -23,10 +23,11 @@ impl Polar {
         })
     }
 
-    /// Derivatives of [`Self::values`]: row, column and value of what differs from the unit matrix.
+    /// Returns the derivatives of [`Self::values`]: row, column and value of each entry that differs from the
+    /// unit matrix.
     pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
         let Self { size, angle } = self;
-        // Both places are those of the law.
+        // Both indices are those of the law.
         let at = |place: usize| fitted.get(place).copied().unwrap_or(0.0);
         let (p, q) = (at(size), at(angle));
         let length = p.hypot(q);
@@ -42,7 +43,7 @@ impl Polar {
         ]
     }
 
-    /// The pair put through a map, the other values left as they are.
+    /// Applies a map to the pair and leaves the other values as they are.
     fn replaced(self, values: &[f64], map: impl Fn(f64, f64) -> (f64, f64)) -> Vec<f64> {
         let mut all = values.to_vec();
         let pair = (values.get(self.size), values.get(self.angle));

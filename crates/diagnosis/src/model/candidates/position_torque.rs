@@ -1,4 +1,4 @@
-//! A torque that repeats along the position, without a name.
+//! Torque that repeats along the position, without a name.
 
 use super::{CandidateLaw, EvidenceClass, Parameter, Polar};
 use crate::data::scales::Scales;
@@ -6,8 +6,8 @@ use dynamics::{Effect, SystemEffect};
 
 const POLAR: Polar = Polar { size: 0, angle: 2 };
 
-/// A torque that repeats along the position: what magnets, bearings and screws make. It has no name in the vocabulary and is
-/// looked for once names are given (see [`crate::explain::position_torque`]).
+/// Torque that repeats along the position, as from magnets, bearings and screws. It has no name in the
+/// vocabulary; the search for it runs after names are given (see [`crate::explain::position_torque`]).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PositionTorque;
 

@@ -1,11 +1,11 @@
-//! A sensor whose zero drifts.
+//! Sensor whose zero drifts.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use crate::model::sensor::{Observed, Sensor};
 use dynamics::{ChainEffect, Effect};
 
-/// A sensor whose zero drifts.
+/// Sensor whose zero drifts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorDrift;
 

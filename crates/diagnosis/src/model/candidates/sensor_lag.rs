@@ -1,4 +1,4 @@
-//! A sensor that follows with a lag.
+//! Sensor that follows with a lag.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
@@ -6,7 +6,7 @@ use crate::model::sensor::{Observed, Sensor};
 use dynamics::{ChainEffect, Effect, Nominal};
 use record::Quantity;
 
-/// A sensor that follows with a lag: a time constant, less than half a radian of the swing.
+/// Sensor that follows with a lag: a time constant, less than the time of half a radian of the swing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorLag;
 
@@ -27,12 +27,13 @@ impl CandidateLaw for SensorLag {
         true
     }
 
-    /// A lag of one frequency is an amplitude and a phase besides: inside the start state.
+    /// At a single frequency a lag is a change of amplitude and phase, which the start state absorbs.
     fn applies(&self, facts: &Scales, _nominal: &Nominal) -> bool {
         facts.input_torque > 0.0
     }
 
-    /// It moves what is observed by its time derivative, which an acceleration has not.
+    /// The effect acts by the time derivative of the observed quantity, which is not available for
+    /// accelerations.
     fn is_observed_in(&self, quantity: Quantity) -> bool {
         quantity != Quantity::Acceleration
     }

@@ -1,4 +1,4 @@
-//! A sensor whose reading bends once a turn.
+//! Sensor with an error that repeats once a turn.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter, Polar};
 use crate::data::scales::Scales;
@@ -8,7 +8,7 @@ use record::Quantity;
 
 const POLAR: Polar = Polar { size: 0, angle: 1 };
 
-/// A sensor whose reading bends once a turn: amplitude and phase, fitted as a Cartesian pair.
+/// Sensor with an error that repeats once a turn: amplitude and phase, fitted as a Cartesian pair.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorNonlinearity;
 
@@ -29,7 +29,7 @@ impl CandidateLaw for SensorNonlinearity {
         false
     }
 
-    /// A sine of the coordinate: a length is not the argument of one.
+    /// The error is a sine of the coordinate, which must therefore be an angle.
     fn applies(&self, _facts: &Scales, nominal: &Nominal) -> bool {
         nominal.coordinate() == Coordinate::Angle
     }
@@ -42,7 +42,7 @@ impl CandidateLaw for SensorNonlinearity {
         &["asymmetric_stiffness", "gravity", "cubic_stiffness"]
     }
 
-    /// The amplitude adds to what is observed, and is held against the size of that.
+    /// The amplitude adds to the observed quantity and is compared with its size.
     fn quantity(&self, index: usize) -> dynamics::Quantity {
         if index == 1 { dynamics::Quantity::Angle } else { dynamics::Quantity::Observed }
     }

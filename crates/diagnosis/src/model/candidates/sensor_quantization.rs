@@ -1,4 +1,4 @@
-//! An encoder whose readings stay behind the motion.
+//! Encoder whose readings lag behind the motion.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
@@ -6,7 +6,7 @@ use crate::model::sensor::Sensor;
 use dynamics::{Active, ChainEffect, Effect, Nominal};
 use record::Quantity;
 
-/// An encoder whose readings stay behind the motion in either direction: by a width of less than two steps.
+/// Encoder whose readings lag behind the motion in either direction, by a width of less than two steps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorQuantization;
 
@@ -27,7 +27,7 @@ impl CandidateLaw for SensorQuantization {
         true
     }
 
-    /// That the sensor has steps shows without any fit, and how they are counted takes no place.
+    /// The sensor's steps show without any fit, so that their hysteresis does not count as an effect.
     fn counts(&self) -> bool {
         false
     }

@@ -1,14 +1,14 @@
-//! A sensor that clips.
+//! Sensor that clips.
 
 use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::sensor::{Observed, Sensor};
 use dynamics::{ChainEffect, Effect};
 
-/// Half ranges to begin with about the middle of the readings, relative to half of their span.
+/// Initial half ranges about the middle of the readings, relative to half of their span.
 const CLIPS: [f64; 6] = [0.998, 0.993, 0.98, 0.93, 0.85, 0.7];
 
-/// A sensor that clips at both ends of its range, which need not have its center at zero.
+/// Sensor that clips at both ends of its range, whose center need not be zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorSaturation;
 

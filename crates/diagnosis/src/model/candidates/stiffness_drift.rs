@@ -1,10 +1,10 @@
-//! A stiffness that drifts.
+//! Stiffness that drifts.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Nominal, SystemEffect};
 
-/// A stiffness that drifts.
+/// Stiffness that drifts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StiffnessDrift;
 

@@ -5,11 +5,11 @@ use super::{CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// Stribeck velocities to begin with, relative to the largest speed.
+/// Initial Stribeck velocities, relative to the largest speed.
 const SPEEDS: [f64; 3] = [0.02, 0.06, 0.2];
 
-/// Friction that falls with speed: Coulomb's torque, the excess of the static torque over it, so that this stays at least
-/// the first, and the velocity over which the excess is lost.
+/// Friction that falls with speed: Coulomb's torque, the excess of the static torque over it (so that the
+/// static torque is at least Coulomb's), and the velocity over which the excess is lost.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StribeckFriction;
 
@@ -64,14 +64,15 @@ impl CandidateLaw for StribeckFriction {
         grid(facts.speed, &SPEEDS, |velocity| vec![1.0, 1.0, velocity])
     }
 
-    /// Coulomb's part and the excess. Where the nominal simulator has the first it would be the same number once more.
+    /// The columns are those of Coulomb's torque and of the excess. If the nominal simulator has Coulomb
+    /// friction, its torque is not fitted twice.
     fn unit_values(&self, shape: &[f64], facts: &Scales) -> Vec<Vec<f64>> {
         let &[_, _, velocity] = shape else { return Vec::new() };
         let both = [vec![1.0, 1.0, velocity], vec![0.0, 1.0, velocity]];
         both.into_iter().skip(usize::from(facts.friction_known)).collect()
     }
 
-    /// Without a column of its own Coulomb's part is 0.
+    /// Without a column of its own Coulomb's torque is 0.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
         let mut sizes = coefficients.iter().rev().copied();
         // Two columns have two coefficients.

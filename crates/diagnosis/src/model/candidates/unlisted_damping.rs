@@ -1,11 +1,12 @@
-//! A damping without a name.
+//! Damping without a name.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// A damping of higher order without a name: drag of another power, a damping that grows or falls with the deflection. It is
-/// no candidate for a name, and what could stand in the place of some (see [`crate::search::nameless`]).
+/// Damping of higher order without a name: drag of another power, or a damping that grows or falls with the
+/// deflection. It is not a candidate for a name, but could take the place of some (see
+/// [`crate::search::nameless`]).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnlistedDamping;
 

@@ -1,11 +1,11 @@
-//! A stiffness without a name.
+//! Stiffness without a name.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 
-/// A spring that bends otherwise than by the square or the cube, without a name. It is no candidate for a name, and what could
-/// stand in the place of some (see [`crate::search::nameless`]).
+/// Nonlinear spring of another power than the square or the cube, without a name. It is not a candidate for a
+/// name, but could take the place of some (see [`crate::search::nameless`]).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnlistedStiffness;
 

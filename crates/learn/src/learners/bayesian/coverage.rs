@@ -1,4 +1,5 @@
-//! Coverage of the posterior's intervals, counted on many simulated records. It takes minutes, so it is run by name:
+//! Coverage of the posterior's intervals, counted on many simulated records. This takes minutes, so it is run
+//! by name:
 //!
 //!     cargo test -p learn coverage -- --ignored --nocapture
 
@@ -11,10 +12,11 @@ use rand_distr::{Distribution, Normal};
 use seed::Seed;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Records of each of the two laws.
+/// Number of records of each of the two laws.
 const RECORDS: usize = 100;
 
-/// A law with coefficients of its own for each record, drawn within a factor of two, and the weights of its terms.
+/// Draws a law whose coefficients lie within a factor of two, separately for each record. Returns the system
+/// and the weights of its terms.
 fn drawn(number: usize, driven: bool) -> (System, Vec<(&'static str, f64)>) {
     let mut generator = Seed::new(number as u64).child("coverage").generator();
     let mut around = |value: f64| value * 2.0_f64.powf(generator.random_range(-0.5..0.5));
@@ -34,12 +36,12 @@ fn drawn(number: usize, driven: bool) -> (System, Vec<(&'static str, f64)>) {
     (System::new(nominal, effects).unwrap(), terms)
 }
 
-/// Errors over standard errors of the coefficients learned from one record, with their names.
+/// Returns the standardized errors of the coefficients learned from one record, with their names.
 fn errors(number: usize, driven: bool) -> Result<Vec<(&'static str, f64)>, LearnError> {
     let (system, terms) = drawn(number, driven);
     let clean = record(&system, number % 6, driven, 0.0);
     let noise = Normal::new(0.0, 2e-3).unwrap();
-    // One record is learned from; one chooses the length of its pieces; nothing is judged on the third.
+    // One record trains; one chooses the length of the pieces; the third is unused.
     let noisy = |part: &str| {
         let mut generator = Seed::new(number as u64).child("coverage").child(part).generator();
         let values = clean.values().iter().map(|value| value + noise.sample(&mut generator)).collect();
@@ -61,8 +63,8 @@ fn errors(number: usize, driven: bool) -> Result<Vec<(&'static str, f64)>, Learn
     Ok(terms.into_iter().map(error).collect())
 }
 
-/// Two hundred records of two laws, each with coefficients, start and noise of its own. The interval of the share counts
-/// records and not coefficients, since those of one record err together.
+/// Two hundred records of two laws, each with its own coefficients, initial state and noise. The interval of
+/// the coverage counts records and not coefficients, because the errors of one record are correlated.
 #[test]
 #[ignore = "takes minutes"]
 fn ninety_five_percent_intervals_hold_the_truth_in_ninety_five_percent() {

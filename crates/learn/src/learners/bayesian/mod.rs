@@ -1,9 +1,10 @@
-//! The posterior of the coefficients of a stated law, by the no-U-turn sampler.
+//! Posterior of the coefficients of a stated law, by the no-U-turn sampler.
 //!
-//! The law is a sum of stated terms. Its likelihood is that of whole trajectories with Gaussian noise; start states are
-//! profiled out (a Gauss–Newton step each, whose derivative drops out at the optimum), the noise is that of the best
-//! fit, widened for correlated residuals, and the prior of the coefficients is flat. Gradients come from exact
-//! sensitivities; the sampler works in the coordinates that make Laplace's approximation a standard normal.
+//! The law is a sum of stated terms. The likelihood is that of whole trajectories with Gaussian noise.
+//! Initial states are profiled out: each takes one Gauss–Newton step, whose derivative vanishes at the
+//! optimum. The noise is that of the best fit, inflated for correlated residuals. The prior of the
+//! coefficients is flat. Gradients come from exact sensitivities; the sampler works in coordinates in which
+//! Laplace's approximation is a standard normal distribution.
 
 #[cfg(test)]
 #[allow(clippy::print_stdout, reason = "what it finds is read, not only checked")]
@@ -26,7 +27,7 @@ use settings::{Default, Field, Kind as Value, Resolved, SettingsError};
 /// Identifier.
 const ID: &str = "bayesian";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Bayesian coefficients (NUTS)",
@@ -77,7 +78,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-/// The learner. Ranges and defaults stand in the registry's fields.
+/// The learner. Ranges and defaults are stated in the registry's fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bayesian {
     library: SparseSettings,
@@ -124,7 +125,7 @@ impl Learner for Bayesian {
     }
 }
 
-/// Draws that bands are made from.
+/// Number of draws that bands are computed from.
 const BAND: usize = 24;
 
 impl Bayesian {
@@ -142,7 +143,7 @@ impl Bayesian {
         };
         let root = fit.covariance().and_then(DMatrix::cholesky).ok_or_else(undetermined)?.l();
         let center = DVector::from_column_slice(&fit.weights);
-        // As many pieces as the fit had start states, cut alike.
+        // As many pieces as the fit had initial states, cut in the same way.
         let pieces = pieces_of(data, self.keys.samples, fit);
         let profile = Profile {
             shooter: FieldShooter::new(library, data),
@@ -167,18 +168,18 @@ impl Bayesian {
     }
 }
 
-/// The pieces that a fit's start states belong to.
+/// Returns the pieces that a fit's initial states belong to.
 fn pieces_of(data: &DataSet, samples: usize, fit: &Fit) -> Vec<Trajectory> {
     let lengths = [2.0, 8.0, 1e6];
     let cut = |periods: f64| data.training_pieces(periods * data.period_s, samples);
     let matching = |pieces: &Vec<Trajectory>| {
         pieces.len() == fit.starts.len() && pieces.iter().map(Trajectory::len).sum::<usize>() == fit.samples
     };
-    // A fit on no pieces of these has no likelihood, and its sampler refuses.
+    // A fit on other pieces has no likelihood here, and the sampler refuses it.
     lengths.into_iter().map(cut).find(matching).unwrap_or_default()
 }
 
-/// The likelihood of the weights with the start states at their best.
+/// Profile likelihood of the weights: every initial state takes its best value.
 struct Profile<'a> {
     shooter: FieldShooter<'a>,
     pieces: &'a [Trajectory],
@@ -187,13 +188,14 @@ struct Profile<'a> {
 }
 
 impl Profile<'_> {
-    /// Log likelihood and its gradient; `None` where the motion runs away.
+    /// Returns the log likelihood and its gradient; `None` if the motion diverges.
     fn at(&self, weights: &[f64]) -> Option<(f64, DVector<f64>)> {
         let count = weights.len();
         let (mut rss, mut pull) = (0.0, DVector::zeros(count));
         for (piece, start) in self.pieces.iter().zip(self.starts) {
             let mut state = *start;
-            // One Gauss–Newton step takes the start state to its best, up to what its second one would change.
+            // One Gauss–Newton step brings the initial state to its optimum, up to the change that a second
+            // step would make.
             for last in [false, true] {
                 let shot = self.shooter.shoot(weights, state, piece).ok()?;
                 let rows = shot.residuals.iter().zip(shot.jacobian.chunks(count + 2));

@@ -1,16 +1,16 @@
-//! The no-U-turn sampler with multinomial weights, for a target near a standard normal distribution.
+//! No-U-turn sampler with multinomial weights, for a target near a standard normal distribution.
 //!
-//! Hoffman, Gelman, Journal of Machine Learning Research 15 (2014) 1593 (algorithm 6, dual averaging); Betancourt,
-//! arXiv:1701.02434 (multinomial sampling along the trajectory).
+//! Hoffman, Gelman, Journal of Machine Learning Research 15 (2014) 1593 (algorithm 6, dual averaging);
+//! Betancourt, arXiv:1701.02434 (multinomial sampling along the trajectory).
 
 use nalgebra::DVector;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
-/// A log density with its gradient; `None` where it is not defined.
+/// Log density with its gradient; `None` where it is undefined.
 pub(super) type Target<'a> = dyn Fn(&DVector<f64>) -> Option<(f64, DVector<f64>)> + 'a;
 
-/// A point of the phase space.
+/// Point in phase space.
 #[derive(Clone)]
 struct Point {
     place: DVector<f64>,
@@ -33,7 +33,7 @@ impl Point {
     }
 }
 
-/// A stretch of a trajectory: its ends, a draw from it, its weight.
+/// Stretch of a trajectory: its ends, a draw from it, and its weight.
 struct Tree {
     back: Point,
     ahead: Point,
@@ -44,10 +44,10 @@ struct Tree {
     leaps: usize,
 }
 
-/// Energy beyond which a trajectory has left the target.
+/// Energy error beyond which a trajectory counts as divergent.
 const LOST: f64 = 1000.0;
 
-/// Doublings of a trajectory at most.
+/// Largest number of doublings of a trajectory.
 const MOST_DOUBLINGS: u32 = 5;
 
 fn goes_on(back: &Point, ahead: &Point) -> bool {
@@ -68,7 +68,8 @@ struct Growing<'a, R> {
 }
 
 impl<R: Rng> Growing<'_, R> {
-    /// A stretch of 2^depth leaps from a point, forward or backward; `None` where the very first leap fails.
+    /// Builds a stretch of 2^depth leapfrog steps from a point, forward or backward; `None` if the very first
+    /// step fails.
     fn tree(&mut self, from: &Point, forward: bool, depth: u32) -> Option<Tree> {
         if depth == 0 {
             let point = from.leap(if forward { self.step } else { -self.step }, self.target)?;
@@ -95,7 +96,8 @@ impl<R: Rng> Growing<'_, R> {
         Some(tree)
     }
 
-    /// Adds a stretch at an end; of the whole trajectory the new draw is preferred (biased progressive sampling).
+    /// Joins a stretch to one end of a tree. If the tree is the whole trajectory, the draw of the new stretch
+    /// is preferred (biased progressive sampling).
     fn join(&mut self, tree: &mut Tree, other: Tree, forward: bool, whole: bool) {
         tree.acceptance += other.acceptance;
         tree.leaps += other.leaps;
@@ -114,7 +116,7 @@ impl<R: Rng> Growing<'_, R> {
     }
 }
 
-/// Draws after so many for warming up, in which the step is adapted; `None` where the target is not defined at zero.
+/// Returns draws after a warm-up that adapts the step size; `None` if the target is undefined at zero.
 pub(super) fn sample<R: Rng>(
     target: &Target<'_>,
     dimensions: usize,
@@ -166,7 +168,7 @@ pub(super) fn sample<R: Rng>(
     Some(kept)
 }
 
-/// Dual averaging of the step towards an acceptance.
+/// Dual averaging of the step size toward a wanted acceptance rate.
 struct Averaging {
     wanted: f64,
     count: f64,
@@ -175,7 +177,7 @@ struct Averaging {
     log_average: f64,
 }
 
-/// Step that averaging begins with and shrinks to: right for a standard normal target of a few dimensions.
+/// Initial step size, to which averaging shrinks: suitable for a standard normal target of a few dimensions.
 const FIRST: f64 = 0.9;
 
 impl Averaging {

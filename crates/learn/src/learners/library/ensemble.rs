@@ -1,4 +1,4 @@
-//! How sure a term is, by an ensemble of resampled regressions.
+//! Inclusion shares of terms, by an ensemble of resampled regressions.
 //!
 //! Fasel, Kutz, Brunton, Brunton, Proceedings of the Royal Society A 478 (2022) 20210904.
 
@@ -6,10 +6,11 @@ use super::{Regression, thresholded};
 use rand::RngExt;
 use seed::Seed;
 
-/// Share of `members` resampled regressions that keep each term, groups of rows drawn with replacement.
+/// Returns the share of `members` resampled regressions that keep each term. Groups of rows are drawn with
+/// replacement.
 #[must_use]
 pub fn inclusion(regression: &Regression, threshold: f64, members: usize, seed: &Seed) -> Vec<f64> {
-    // Without a row there is no group.
+    // Without rows there is no group.
     let last = regression.groups.iter().max().map_or(0, |last| last + 1);
     let mut by_group: Vec<Vec<usize>> = vec![Vec::new(); last];
     for (row, &group) in regression.groups.iter().enumerate() {

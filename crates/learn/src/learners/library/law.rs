@@ -1,4 +1,4 @@
-//! A stated law with weights as a model.
+//! Model of a stated law with weights.
 
 use super::Library;
 use crate::Coefficient;
@@ -7,7 +7,7 @@ use crate::flow::{FlowModel, Posterior, Running};
 use serde_json::json;
 use settings::{Default, Field, Kind};
 
-/// Setting for the terms of a law that is stated, and not searched.
+/// Setting for the terms of a law that is stated rather than searched.
 pub(crate) const LAW: Field = Field {
     key: "library",
     kind: Kind::Texts { at_least: 1, at_most: 10 },
@@ -25,7 +25,7 @@ pub(crate) const LAW: Field = Field {
     source: "",
 };
 
-/// The model of a law: its weights, and their standard errors where there are any.
+/// Builds the model of a law from its weights and their optional standard errors.
 #[must_use]
 pub fn law(
     learner: &'static str,
@@ -35,7 +35,7 @@ pub fn law(
     running: Running,
     data: &DataSet,
 ) -> FlowModel {
-    // Without standard errors every coefficient has none.
+    // Without standard errors, no coefficient has one.
     let errors = errors.unwrap_or_default().iter().copied().map(Some).chain(std::iter::repeat(None));
     let coefficients =
         library.terms().iter().zip(weights).zip(errors).map(|((term, value), error)| Coefficient {

@@ -1,4 +1,4 @@
-//! Terms of a law and the field they make.
+//! Terms of a law, and the field that they make up.
 
 use crate::Place;
 use crate::expression::Expression;
@@ -6,10 +6,10 @@ use crate::flow::{Field, Slope};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A term of the acceleration.
+/// Term of the acceleration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Term {
-    /// 1: a constant torque, a rest position.
+    /// 1: a constant torque, or a shifted rest position.
     #[serde(rename = "1")]
     Constant,
     /// θ: a spring.
@@ -18,10 +18,10 @@ pub enum Term {
     /// θ̇: viscous friction.
     #[serde(rename = "theta_dot")]
     Velocity,
-    /// θ²: a spring that differs from side to side.
+    /// θ²: a spring with different stiffness on the two sides.
     #[serde(rename = "theta^2")]
     Square,
-    /// θ³: a spring that stiffens.
+    /// θ³: a hardening or softening spring.
     #[serde(rename = "theta^3")]
     Cube,
     /// sign θ̇: dry friction.
@@ -30,22 +30,22 @@ pub enum Term {
     /// θ̇·|θ̇|: drag.
     #[serde(rename = "theta_dot*|theta_dot|")]
     Drag,
-    /// sin θ: a weight.
+    /// sin θ: gravity.
     #[serde(rename = "sin(theta)")]
     Sine,
-    /// cos θ: a weight beside its hanging position.
+    /// cos θ: gravity, if the weight does not hang at θ = 0.
     #[serde(rename = "cos(theta)")]
     Cosine,
     /// u: the input.
     #[serde(rename = "u")]
     Input,
-    /// A term of the user's own.
+    /// User-defined term.
     #[serde(rename = "own")]
     Own(Expression),
 }
 
 impl Term {
-    /// Every term that has a name here.
+    /// All built-in terms.
     pub const ALL: [Self; 10] = [
         Self::Constant,
         Self::Position,
@@ -59,7 +59,7 @@ impl Term {
         Self::Input,
     ];
 
-    /// Name in configurations and tables.
+    /// Returns the name used in configurations and tables.
     #[must_use]
     pub fn name(&self) -> Cow<'static, str> {
         let name = match self {
@@ -78,7 +78,7 @@ impl Term {
         Cow::Borrowed(name)
     }
 
-    /// Unit of its coefficient, for positions in `unit`.
+    /// Returns the unit of the term's coefficient, for positions in `unit`.
     #[must_use]
     pub fn unit(&self, unit: &str) -> String {
         match self {
@@ -93,7 +93,7 @@ impl Term {
         }
     }
 
-    /// Its value at a place.
+    /// Returns the term's value at a state.
     #[must_use]
     pub fn value(&self, place: &Place) -> f64 {
         let Place { position: x, velocity: v, direction, input } = *place;
@@ -112,7 +112,7 @@ impl Term {
         }
     }
 
-    /// Its derivatives with respect to position and velocity.
+    /// Returns the term's derivatives with respect to position and velocity.
     #[must_use]
     pub fn slope(&self, place: &Place) -> [f64; 2] {
         let Place { position: x, velocity: v, direction, .. } = *place;
@@ -132,7 +132,7 @@ impl Term {
         }
     }
 
-    /// Whether it depends on the direction of the motion.
+    /// Returns `true` if the term depends on the direction of the motion.
     #[must_use]
     pub fn is_directed(&self) -> bool {
         match self {
@@ -142,26 +142,26 @@ impl Term {
     }
 }
 
-/// A sum of terms, each with a weight.
+/// Weighted sum of terms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Library {
     terms: Vec<Term>,
 }
 
 impl Library {
-    /// A law with these terms.
+    /// Builds a law with these terms.
     #[must_use]
     pub fn new(terms: Vec<Term>) -> Self {
         Self { terms }
     }
 
-    /// Its terms.
+    /// Returns the terms.
     #[must_use]
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }
 
-    /// The law as text.
+    /// Returns the law as text.
     #[must_use]
     pub fn equation(&self, weights: &[f64]) -> String {
         let mut text = "theta_ddot =".to_owned();
@@ -205,7 +205,8 @@ impl Field for Library {
     }
 }
 
-/// Weight of a sum's member with its sign, the first number 0, as in "a = -1.00000*b + 2.00000*c".
+/// Formats a summand's weight with its sign; `number` is 0 for the first summand, as in "a = -1.00000*b +
+/// 2.00000*c".
 pub(crate) fn signed(number: usize, weight: f64) -> String {
     let sign = match (number, weight < 0.0) {
         (0, true) => " -",

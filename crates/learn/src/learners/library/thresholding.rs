@@ -1,27 +1,28 @@
 //! Sequentially thresholded least squares.
 //!
-//! Brunton, Proctor, Kutz, PNAS 113 (2016) 3932. Terms are compared by what they contribute (weight times the column's
-//! size), since weights in different units cannot be.
+//! Brunton, Proctor, Kutz, PNAS 113 (2016) 3932. Terms are compared by their contribution (weight times the
+//! norm of the column), because weights in different units cannot be compared.
 
 use super::Term;
 use crate::linear::least_squares;
 use nalgebra::{DMatrix, DVector};
 
-/// A linear regression of accelerations, or of their weak form, on terms; rows come in groups that are resampled whole.
+/// Linear regression of accelerations, or of their weak form, on terms. Rows belong to groups that are
+/// resampled as a whole.
 #[derive(Debug, Clone)]
 pub struct Regression {
-    /// The terms, one for each column.
+    /// Terms, one per column.
     pub terms: Vec<Term>,
-    /// Values of the terms.
+    /// Values of the terms, rows × terms.
     pub rows: DMatrix<f64>,
-    /// What they are to sum to.
+    /// Right side, one per row: accelerations or their weak form.
     pub right: DVector<f64>,
     /// Group of each row.
     pub groups: Vec<usize>,
 }
 
 impl Regression {
-    /// The rows whose numbers are listed.
+    /// Returns the rows with these indices.
     #[must_use]
     pub fn selected(&self, rows: &[usize]) -> Self {
         Self {
@@ -33,8 +34,8 @@ impl Regression {
     }
 }
 
-/// Weights of the terms kept, 0 for others: least squares, and terms that contribute less than `threshold` of the whole
-/// left out, again and again until none does.
+/// Returns the weights of the kept terms and 0 for the others. Least squares is repeated, each time without
+/// the terms that contribute less than `threshold` of the whole, until every term contributes more.
 #[must_use]
 pub fn thresholded(regression: &Regression, threshold: f64) -> Vec<f64> {
     let total = regression.right.norm().max(f64::MIN_POSITIVE);
@@ -49,7 +50,7 @@ pub fn thresholded(regression: &Regression, threshold: f64) -> Vec<f64> {
             .zip(weights.iter())
             .map(|(column, weight)| column.norm() * weight.abs() / total)
             .collect();
-        // A term without effect on these rows cannot be told from any other.
+        // A term without effect on these rows cannot be distinguished from any other.
         let left: Vec<usize> =
             kept.iter().zip(&sizes).filter(|(_, size)| **size >= threshold).map(|(term, _)| *term).collect();
         if left.len() == kept.len() || left.is_empty() {

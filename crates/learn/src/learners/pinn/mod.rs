@@ -1,13 +1,15 @@
-//! A physics-informed network: trajectories as networks of time, the coefficients of a stated law inferred with them.
+//! Physics-informed network: trajectories as networks of time, and the coefficients of a stated law inferred
+//! with them.
 //!
-//! Every window of the training records gets a network θ̂(t) with Fourier features. Weights and coefficients minimize
-//! Σ (θ̂(tᵢ) − yᵢ)²/σ² + Σ (θ̂″ − Σ cⱼ·fⱼ(θ̂, θ̂′, u))²/τ² together, by Levenberg–Marquardt with the networks eliminated
-//! window by window; τ falls from half the typical acceleration to a thousandth of it. Dry friction jumps where the motion
-//! turns back and a network cannot, so the windows of a law that has it end there. Standard errors are those of the
-//! linearized problem. What predicts is the law with the inferred coefficients.
+//! Every window of the training records gets a network θ̂(t) with Fourier features. Weights and coefficients
+//! together minimize Σ (θ̂(tᵢ) − yᵢ)²/σ² + Σ (θ̂″ − Σ cⱼ·fⱼ(θ̂, θ̂′, u))²/τ² by Levenberg–Marquardt, with the
+//! networks eliminated window by window; τ falls from half the typical acceleration to a thousandth of it.
+//! Dry friction jumps at turning points and a network cannot, so the windows of a law with dry friction end
+//! there. Standard errors are those of the linearized problem. Predictions come from the law with the
+//! inferred coefficients.
 //!
-//! Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686 (inverse problems); Tancik et al.,
-//! NeurIPS 33 (2020) (Fourier features).
+//! Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686 (inverse problems);
+//! Tancik et al., NeurIPS 33 (2020) (Fourier features).
 
 mod trajectory;
 mod windows;
@@ -28,7 +30,7 @@ use windows::{Problem, Sizes, Unknowns, jumps, stretches};
 /// Identifier.
 const ID: &str = "pinn";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Physics-informed network",
@@ -86,7 +88,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-/// The learner. Ranges and defaults stand in the registry's fields.
+/// The learner. Ranges and defaults are stated in the registry's fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pinn {
     library: SparseSettings,
@@ -103,10 +105,10 @@ struct Keys {
     max_steps: u64,
 }
 
-/// Tolerated residuals of the law over the typical acceleration, one after the other.
+/// Successive tolerances of the law's residual, relative to the typical acceleration.
 const TOLERANCES: [f64; 5] = [0.5, 0.1, 0.02, 0.005, 0.001];
 
-/// Relative change of the objective below which a weight of the physics is done with.
+/// Relative change of the objective below which the fit at one tolerance counts as converged.
 const SMALL: f64 = 1e-5;
 
 impl Pinn {
@@ -131,7 +133,7 @@ impl Learner for Pinn {
         let problem = Problem::new(shape, &library, &pieces, data);
         let seed = context.seed.child("initial weights");
         let networks = (0..pieces.len()).map(|at| shape.start(&seed.child(&at.to_string()))).collect();
-        // A first guess by the weak form; the coefficients move from the first step on.
+        // First guess by the weak form; every step also changes the coefficients.
         let start = thresholded(&weak_sindy::regression(data, &terms), 0.0);
         let mut search = Search {
             problem: &problem,
@@ -145,7 +147,7 @@ impl Learner for Pinn {
             search.settle(context.steps(self.keys.max_steps), context)?;
         }
         let standing = problem.standing(&search.unknowns, search.sizes);
-        // What is left decides how much the observations and the law are worth.
+        // The remaining residuals set the weights of the observations and of the law.
         let sizes = Sizes {
             noise: standing.misfit.max(data.noise),
             tolerance: standing.residual.max(search.sizes.tolerance),
@@ -167,7 +169,7 @@ impl Learner for Pinn {
     }
 }
 
-/// A search on its way.
+/// Search in progress.
 struct Search<'a> {
     problem: &'a Problem<'a>,
     unknowns: Unknowns,
@@ -177,7 +179,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Levenberg–Marquardt at one weight of the physics.
+    /// Minimizes the objective at one tolerance by Levenberg–Marquardt.
     fn settle(&mut self, most: u64, context: &Context<'_>) -> Result<(), LearnError> {
         let mut damping = 1e-4;
         let mut standing = self.problem.standing(&self.unknowns, self.sizes);

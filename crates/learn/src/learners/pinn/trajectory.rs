@@ -1,34 +1,35 @@
-//! A network of time: Fourier features, one hidden layer of tanh beside a linear path, and exact derivatives in time and
-//! with respect to the weights.
+//! Network of time: Fourier features, one hidden layer of tanh units beside a linear path, and exact
+//! derivatives with respect to time and weights.
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 
-/// Shape of a network of scaled time, −1 to 1.
+/// Shape of a network of scaled time, which runs from −1 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Frequencies of the features: half a cycle of the window, a whole one, one and a half, …
+    /// Number of frequencies of the features: half a cycle per window, one cycle, one and a half, …
     pub(super) frequencies: usize,
-    /// Hidden units.
+    /// Number of hidden units.
     pub(super) hidden: usize,
 }
 
-/// Value, first and second derivative with respect to scaled time, of anything.
+/// Value, first and second derivative with respect to scaled time.
 pub(super) type Jet = [f64; 3];
 
 impl Shape {
-    /// Number of features: 1, the time, a sine and a cosine of each frequency.
+    /// Returns the number of features: 1, the time, and a sine and a cosine of each frequency.
     fn features(self) -> usize {
         2 + 2 * self.frequencies
     }
 
-    /// Number of weights: the linear path, then of each unit output weight, bias and input weights.
+    /// Returns the number of weights: those of the linear path, then each unit's output weight, bias and
+    /// input weights.
     pub(super) fn weights(self) -> usize {
         self.features() + self.hidden * (2 + self.features())
     }
 
-    /// Start weights: the network is zero, its hidden units are not.
+    /// Draws initial weights: the network's output is zero, its hidden units are not.
     pub(super) fn start(self, seed: &Seed) -> Vec<f64> {
         let mut generator = seed.generator();
         let (features, spread) = (self.features(), (self.features() as f64).sqrt().recip());
@@ -45,7 +46,7 @@ impl Shape {
         weights
     }
 
-    /// The features at a scaled time.
+    /// Returns the features at a scaled time.
     fn features_at(self, s: f64) -> Vec<Jet> {
         let waves = (1..=self.frequencies).flat_map(|number| {
             let rate = 0.5 * std::f64::consts::PI * number as f64;
@@ -56,7 +57,8 @@ impl Shape {
         [[1.0, 0.0, 0.0], [s, 1.0, 0.0]].into_iter().chain(waves).collect()
     }
 
-    /// The network at a scaled time, and the derivatives of value, slope and curvature with respect to each weight.
+    /// Returns the network at a scaled time, and the derivatives of its value, slope and curvature with
+    /// respect to each weight.
     pub(super) fn at(self, weights: &[f64], s: f64) -> (Jet, Vec<Jet>) {
         let features = self.features_at(s);
         let (linear, units) = weights.split_at_checked(features.len()).unwrap_or((weights, &[]));

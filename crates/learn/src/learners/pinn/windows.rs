@@ -1,4 +1,5 @@
-//! Windows of records with a network each, and the coefficients that they share: residuals, normal equations, steps.
+//! Windows of records, each with a network, and the coefficients that they share: residuals, normal
+//! equations, steps.
 
 use super::trajectory::Shape;
 use crate::Place;
@@ -9,32 +10,32 @@ use crate::linear::{inverse, raised, solve};
 use dynamics::Hold;
 use nalgebra::{DMatrix, DVector};
 
-/// Sizes that the residuals are divided by.
+/// Scales that the residuals are divided by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sizes {
     /// Standard deviation of an observation.
     pub(super) noise: f64,
-    /// Tolerated residual of the law, an acceleration.
+    /// Tolerated residual of the law, as an acceleration.
     pub(super) tolerance: f64,
 }
 
-/// The whole problem.
+/// The whole fitting problem.
 pub(super) struct Problem<'a> {
     pub(super) shape: Shape,
     pub(super) library: &'a Library,
     pub(super) windows: Vec<Window>,
     pub(super) scale: Scale,
-    /// True for a law with a term that jumps where the motion turns back.
+    /// `true` if the law has a term that jumps at turning points.
     jumps: bool,
 }
 
-/// A window of a record.
+/// Window of a record.
 pub(super) struct Window {
-    /// Scaled times and observations.
+    /// Scaled times and observed positions.
     observed: Vec<(f64, f64)>,
-    /// Scaled times at which the law is held, with the input there.
+    /// Collocation points: scaled times at which the law is enforced, and the input there.
     collocation: Vec<(f64, f64)>,
-    /// Half the length, in seconds.
+    /// Half the length of the window, in seconds.
     half_s: f64,
 }
 
@@ -45,12 +46,12 @@ pub(super) struct Unknowns {
     pub(super) networks: Vec<Vec<f64>>,
 }
 
-/// Objective and residuals of some unknowns.
+/// Objective and residuals at given unknowns.
 pub(super) struct Standing {
     pub(super) objective: f64,
-    /// Root mean square of what the networks leave of the observations, in the position's unit.
+    /// Root mean square difference between networks and observations, in the unit of the positions.
     pub(super) misfit: f64,
-    /// Root mean square residual of the law, an acceleration.
+    /// Root mean square residual of the law, as an acceleration.
     pub(super) residual: f64,
 }
 
@@ -61,30 +62,31 @@ struct Block {
     right: DVector<f64>,
 }
 
-/// The normal equations of all windows.
+/// Normal equations of all windows.
 pub(super) struct Equations {
     blocks: Vec<Block>,
     shared: DMatrix<f64>,
     right: DVector<f64>,
 }
 
-/// Points at which the law is held, for each sample.
+/// Number of collocation points per sample.
 const COLLOCATION: f64 = 2.0;
 
-/// Damping that rounding asks for.
+/// Damping just large enough to absorb rounding errors.
 const NEXT_TO_NONE: f64 = 1e-11;
 
-/// Precision of the networks' weights: as good as none, but it keeps the equations solvable.
+/// Prior precision of the networks' weights; nearly flat, but it keeps the equations solvable.
 const RIDGE: f64 = 1e-6;
 
-/// Part of the typical velocity below which a motion is at its turning point, as far as that is known.
+/// Share of the typical velocity below which a motion may be at its turning point.
 const TURNING: f64 = 0.05;
 
-/// Fewest samples of a window.
+/// Smallest number of samples in a window.
 const LEAST: usize = 10;
 
-/// Stretches of the training part of at most `seconds`, together at most `samples`; where the law jumps at turning points,
-/// none goes beyond one.
+/// Cuts the training part into stretches of at most about `seconds`. If they have more than about `samples`
+/// samples in total, evenly chosen stretches are kept. For a law that jumps at turning points, no stretch
+/// crosses one.
 pub(super) fn stretches(data: &DataSet, jumps: bool, seconds: f64, samples: usize) -> Vec<Trajectory> {
     let mut found: Vec<Trajectory> = Vec::new();
     for part in &data.train {
@@ -118,8 +120,8 @@ impl Window {
     }
 }
 
-/// The input at a time, smooth. One that is held jumps at every sample, which no motion follows: what it feels is the mean
-/// over the interval before.
+/// Returns the input at a time, smoothed. A held input jumps at every sample, which no smooth motion can
+/// follow; its mean over the preceding interval takes its place.
 fn input_at(piece: &Trajectory, time: f64, hold: Hold) -> f64 {
     let Some(input) = piece.input() else { return 0.0 };
     let at = |time: f64| interpolated(piece.times_s(), input, time);
@@ -133,7 +135,7 @@ fn input_at(piece: &Trajectory, time: f64, hold: Hold) -> f64 {
     }
 }
 
-/// True for a law that jumps where the motion turns back.
+/// Returns `true` for a law that jumps at turning points.
 pub(super) fn jumps(library: &Library) -> bool {
     library.terms().contains(&Term::Direction)
 }
@@ -144,8 +146,9 @@ impl<'a> Problem<'a> {
         Self { shape, library, windows, scale: data.scale, jumps: jumps(library) }
     }
 
-    /// Residuals of a window over their sizes, with their Jacobian: rows of network weights, then of coefficients; the
-    /// observations first. Where the law is not held, the row is left out.
+    /// Returns the scaled residuals of a window with their Jacobian, the observations first. Each row holds
+    /// the derivatives with respect to network weights, then coefficients. Collocation points where the law
+    /// is not enforced have no row.
     fn rows(&self, window: &Window, coefficients: &[f64], network: &[f64], sizes: Sizes) -> Rows {
         let (own, shared) = (self.shape.weights(), coefficients.len());
         let mut rows = Rows { residuals: Vec::new(), jacobian: Vec::new(), observed: window.observed.len() };
@@ -183,7 +186,7 @@ impl<'a> Problem<'a> {
         rows
     }
 
-    /// Objective and residuals.
+    /// Returns objective and residuals.
     pub(super) fn standing(&self, unknowns: &Unknowns, sizes: Sizes) -> Standing {
         let mut standing = Standing { objective: 0.0, misfit: 0.0, residual: 0.0 };
         let (mut observed, mut held) = (0_usize, 0_usize);
@@ -203,7 +206,7 @@ impl<'a> Problem<'a> {
         standing
     }
 
-    /// The normal equations.
+    /// Returns the normal equations.
     pub(super) fn equations(&self, unknowns: &Unknowns, sizes: Sizes) -> Equations {
         let (own, shared) = (self.shape.weights(), unknowns.coefficients.len());
         let mut all = Equations {
@@ -229,7 +232,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Residuals of a window.
+/// Scaled residuals of a window, and their Jacobian.
 struct Rows {
     residuals: Vec<f64>,
     jacobian: Vec<f64>,
@@ -237,7 +240,7 @@ struct Rows {
 }
 
 impl Equations {
-    /// The normal matrix of the coefficients with the networks eliminated, and its right side.
+    /// Returns the normal matrix of the coefficients with the networks eliminated, and its right side.
     fn eliminated(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let (mut matrix, mut right) = (raised(&self.shared, damping), self.right.clone());
         for block in &self.blocks {
@@ -248,7 +251,7 @@ impl Equations {
         Some((matrix, right))
     }
 
-    /// The unknowns after a damped step (Marquardt 1963).
+    /// Returns the unknowns after a damped step (Marquardt 1963).
     pub(super) fn step(&self, from: &Unknowns, damping: f64) -> Option<Unknowns> {
         let (matrix, right) = self.eliminated(damping)?;
         let by = solve(&matrix, &right)?;
@@ -262,7 +265,8 @@ impl Equations {
         Some(next)
     }
 
-    /// Covariance of the coefficients, the networks free; `None` where they are not determined.
+    /// Returns the covariance of the coefficients with the networks left free; `None` if the data do not
+    /// determine them.
     pub(super) fn covariance(&self) -> Option<DMatrix<f64>> {
         inverse(&self.eliminated(NEXT_TO_NONE)?.0)
     }

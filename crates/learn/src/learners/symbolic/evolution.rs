@@ -1,25 +1,25 @@
-//! Drawing, crossover and mutation of sums of expressions.
+//! Random drawing, crossover and mutation of sums of expressions.
 
 use crate::expression::{Expression, Function, Operator, Variable};
 use rand::{Rng, RngExt};
 
-/// Building blocks of expressions, and their limits.
+/// Building blocks of expressions, and size limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grammar {
-    /// True where there is an input.
+    /// `true` if there is an input.
     pub(super) driven: bool,
-    /// True where positions are angles, of which there are sines.
+    /// `true` if positions are angles; only angles have sines.
     pub(super) angle: bool,
-    /// Most parts of a sum.
+    /// Largest number of parts of a sum.
     pub(super) most_parts: usize,
-    /// Most nodes of a part.
+    /// Largest number of nodes of a part.
     pub(super) most_nodes: usize,
 }
 
-/// Share of operators among the inner nodes, the others being functions.
+/// Share of operators among the inner nodes; the others are functions.
 const JOINS: f64 = 0.6;
 
-/// Share of leaves among the nodes that may be something else.
+/// Share of leaves among nodes that need not be leaves.
 const EARLY_LEAVES: f64 = 0.35;
 
 /// Share of numbers among the leaves.
@@ -30,7 +30,7 @@ fn one_of<T: Copy, G: Rng>(from: &[T], otherwise: T, generator: &mut G) -> T {
 }
 
 impl Grammar {
-    /// A drawn expression of at most `depth` levels below its root.
+    /// Draws an expression with at most `depth` levels below its root.
     pub(super) fn draw<G: Rng>(&self, depth: usize, generator: &mut G) -> Expression {
         if depth == 0 || generator.random_bool(EARLY_LEAVES) {
             return self.leaf(generator);
@@ -43,7 +43,8 @@ impl Grammar {
         }
         let function = one_of(self.functions(), Function::Abs, generator);
         let of = match function {
-            // Elsewhere than at turning points a law is smooth.
+            // A law is smooth except at turning points, so only the velocity gets a sign or an absolute
+            // value.
             Function::Sign | Function::Abs => Expression::Variable(Variable::Velocity),
             _ => self.draw(depth - 1, generator),
         };
@@ -58,27 +59,28 @@ impl Grammar {
 
     fn leaf<G: Rng>(&self, generator: &mut G) -> Expression {
         if generator.random_bool(NUMBERS) {
-            // Two digits: what is finer is up to the weights.
+            // One decimal suffices; the weights supply finer values.
             let value: f64 = generator.random_range(-3.0..3.0);
             return Expression::Number((10.0 * value).round() / 10.0);
         }
         let variables = [Variable::Position, Variable::Velocity, Variable::Input];
         let count = if self.driven { 3 } else { 2 };
         Expression::Variable(one_of(
-            // Two or three of three.
+            // Two or three of the three variables.
             variables.get(..count).unwrap_or_default(),
             Variable::Position,
             generator,
         ))
     }
 
-    /// A drawn sum.
+    /// Draws a sum.
     pub(super) fn sum<G: Rng>(&self, generator: &mut G) -> Vec<Expression> {
         let count = generator.random_range(1..=self.most_parts.clamp(1, 4));
         (0..count).map(|_| self.draw(2, generator)).collect()
     }
 
-    /// A child of two sums: parts of both; or one part added, left out, replaced, or varied.
+    /// Returns a child of two sums: parts of both, or the first with one part added, removed, replaced or
+    /// mutated.
     pub(super) fn child<G: Rng>(
         &self,
         [one, other]: [&[Expression]; 2],
@@ -106,7 +108,7 @@ impl Grammar {
         self.tidied(child)
     }
 
-    /// An expression with one of its subexpressions drawn anew.
+    /// Returns an expression with one subexpression drawn anew.
     fn varied<G: Rng>(&self, part: &Expression, generator: &mut G) -> Expression {
         if generator.random_bool(1.0 / part.nodes() as f64) {
             return self.draw(2, generator);
@@ -125,7 +127,7 @@ impl Grammar {
         }
     }
 
-    /// At most the parts that there may be, none too large and none twice.
+    /// Removes duplicate parts, parts that are too large, and parts beyond the largest number.
     pub(super) fn tidied(&self, parts: Vec<Expression>) -> Vec<Expression> {
         let mut kept: Vec<Expression> = Vec::new();
         for part in parts {

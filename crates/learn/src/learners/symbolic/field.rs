@@ -1,23 +1,23 @@
-//! A weighted sum of expressions as a law of motion.
+//! Law of motion that is a weighted sum of expressions.
 
 use crate::Place;
 use crate::expression::Expression;
 use crate::flow::{Field, Slope};
 use crate::learners::library::signed;
 
-/// An acceleration Σ wₖ·gₖ(θ, θ̇, u).
+/// Acceleration Σ wₖ·gₖ(θ, θ̇, u).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sum {
     pub(super) parts: Vec<Expression>,
 }
 
 impl Sum {
-    /// Number of nodes of all parts.
+    /// Returns the number of nodes: those of all parts, plus one per part for its weight.
     pub(super) fn nodes(&self) -> usize {
         self.parts.iter().map(|part| 1 + part.nodes()).sum()
     }
 
-    /// The law as text.
+    /// Returns the law as text.
     pub(super) fn equation(&self, weights: &[f64]) -> String {
         let mut text = "theta_ddot =".to_owned();
         for (number, (part, weight)) in self.parts.iter().zip(weights).enumerate() {

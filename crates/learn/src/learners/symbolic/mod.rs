@@ -1,12 +1,13 @@
 //! Symbolic regression of the torque in weak form.
 //!
-//! Sums of expressions of position, velocity and input evolve; the weights of a sum are those of least squares in weak
-//! form, in which no observation is differentiated. The front of error against number of nodes is judged on the validation
-//! part: the simplest law within one standard error of the best is taken as it is, nothing is added to it. Its weights
-//! are then refitted to trajectories.
+//! Sums of expressions of position, velocity and input evolve. A sum's weights come from least squares in
+//! weak form, in which no observation is differentiated. The Pareto front of error and number of nodes is
+//! scored on the validation part; the simplest law within one standard error of the best is chosen, and
+//! nothing is added to it. Finally its weights are refitted to trajectories.
 //!
-//! Searson, Leahy, Willis, IMECS 2010 (sums with least-squares weights); Cranmer, arXiv:2305.01582 (2023); Breiman,
-//! Friedman, Olshen, Stone, Classification and Regression Trees (1984), section 3.4.3 (one standard error).
+//! Searson, Leahy, Willis, IMECS 2010 (sums with least-squares weights); Cranmer, arXiv:2305.01582 (2023);
+//! Breiman, Friedman, Olshen, Stone, Classification and Regression Trees (1984), section 3.4.3 (one standard
+//! error).
 
 mod evolution;
 mod field;
@@ -32,7 +33,7 @@ use weak::Weak;
 /// Identifier.
 const ID: &str = "symbolic";
 
-/// The registry's line.
+/// Entry in the registry.
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Symbolic regression",
@@ -101,7 +102,7 @@ const FIELDS: &[Key] = &[
     },
 ];
 
-/// The learner. Ranges and defaults stand in the registry's fields.
+/// The learner. Ranges and defaults are stated in the registry's fields.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Symbolic {
     population: usize,
@@ -113,13 +114,13 @@ pub struct Symbolic {
     max_steps: u64,
 }
 
-/// Windows in weak form at most.
+/// Largest number of windows in weak form.
 const MOST_WINDOWS: usize = 500;
 
-/// Sums that a parent is the best of.
+/// Tournament size: a parent is the best of this many sums.
 const TOURNAMENT: usize = 4;
 
-/// A sum with its weights and its error on the training part, relative.
+/// Sum with its weights and its relative error on the training part.
 #[derive(Debug, Clone)]
 struct Individual {
     sum: Sum,
@@ -129,7 +130,7 @@ struct Individual {
 }
 
 impl Symbolic {
-    /// A sum with the weights of least squares; `None` where it is not finite or its parts are one.
+    /// Fits the weights of a sum by least squares; `None` if they are not finite or cannot be determined.
     fn individual(&self, weak: &Weak, parts: Vec<Expression>) -> Option<Individual> {
         let columns = weak.columns(&parts)?;
         let weights: Vec<f64> = least_squares(&columns, &weak.right)?.iter().copied().collect();
@@ -145,7 +146,7 @@ impl Symbolic {
         })
     }
 
-    /// The front of error against nodes that the evolution leaves, the simplest first.
+    /// Evolves sums and returns the Pareto front of error and number of nodes, simplest first.
     fn evolved(
         &self,
         weak: &Weak,
@@ -179,7 +180,8 @@ impl Symbolic {
         Ok(front.into_values().collect())
     }
 
-    /// The simplest of a front within one standard error of the least error on validation windows.
+    /// Returns the simplest individual of a front whose error on validation windows is within one standard
+    /// error of the smallest.
     fn chosen(front: Vec<Individual>, held_out: &Weak) -> Option<Individual> {
         let judged: Vec<(f64, f64, Individual)> = front
             .into_iter()
@@ -197,7 +199,7 @@ impl Symbolic {
     }
 }
 
-/// Puts an individual on the front where none that is simpler is as good.
+/// Adds an individual to the front unless a simpler one, or one of the same size, is as good.
 fn offer(front: &mut BTreeMap<usize, Individual>, own: &Individual) {
     let nodes = own.sum.nodes();
     if front.range(..=nodes).any(|(_, other)| other.error <= own.error) {
@@ -207,9 +209,9 @@ fn offer(front: &mut BTreeMap<usize, Individual>, own: &Individual) {
     front.insert(nodes, own.clone());
 }
 
-/// The best of some that are drawn.
+/// Returns the best of a few randomly drawn individuals.
 fn winner<'a, G: Rng>(population: &'a [Individual], generator: &mut G) -> Option<&'a Individual> {
-    // The population stands in the order of its scores.
+    // The population is sorted by score.
     let places = (0..TOURNAMENT).map(|_| generator.random_range(0..population.len().max(1)));
     places.min().and_then(|place| population.get(place))
 }
@@ -241,7 +243,7 @@ impl Learner for Symbolic {
                 let reached = if fit.converged { Reached::Converged } else { Reached::BudgetSpent };
                 Ok(Fitted { model: Box::new(whole), reached, steps: evolved + steps })
             }
-            // What cannot be refitted keeps the weights of the weak form.
+            // A law that cannot be refitted keeps the weights of the weak form.
             Err(LearnError::Diverged { .. }) => Ok(Fitted {
                 model: Box::new(plain(&own.weights)),
                 reached: Reached::Diverged,

@@ -1,4 +1,4 @@
-//! Records in weak form, ready for any expression: ∫φ̈·θ = Σ wₖ·∫φ·gₖ over windows of a period.
+//! Records in weak form, prepared for any expression: ∫φ̈·θ = Σ wₖ·∫φ·gₖ over windows of one period.
 
 use super::super::weak_sindy::EXPONENT;
 use crate::data::{Trajectory, local_states};
@@ -8,17 +8,18 @@ use dynamics::Hold;
 use dynamics::weak_form::test_function;
 use nalgebra::{DMatrix, DVector};
 
-/// States with the windows that they are in.
+/// States, and the windows that contain them.
 pub(super) struct Weak {
     places: Vec<Place>,
-    /// Of each window: its first place, and the weight of each place from there on.
+    /// First state of each window, and the weights of the states from there on.
     windows: Vec<(usize, Vec<f64>)>,
-    /// The integral of the acceleration over each window.
+    /// Integral of the acceleration over each window.
     pub(super) right: DVector<f64>,
 }
 
 impl Weak {
-    /// Windows of one period, a quarter of a period apart or as far as keeps them to `most`.
+    /// Builds windows of one period. They are a quarter of a period apart, or farther if there would
+    /// otherwise be more than `most`.
     pub(super) fn new(parts: &[Trajectory], period_s: f64, hold: Hold, most: usize) -> Self {
         let whole: f64 = parts.iter().map(Trajectory::duration_s).sum();
         let step = (whole / most.max(1) as f64).max(0.25 * period_s);
@@ -35,7 +36,7 @@ impl Weak {
                 let to = states.partition_point(|state| state.time_s <= center + half);
                 let mut sum = 0.0;
                 let mut weights = Vec::new();
-                // Both places were found among the states.
+                // Both indices were found among the states.
                 for state in states.get(from..to).unwrap_or_default() {
                     let [value, _, curvature] = test_function((state.time_s - center) / half, EXPONENT);
                     let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);
@@ -60,7 +61,7 @@ impl Weak {
         Self { places, windows, right: DVector::from_vec(right) }
     }
 
-    /// The integral of an expression over each window; `None` where it is not finite.
+    /// Returns the integral of an expression over each window; `None` if it is not finite.
     pub(super) fn column(&self, part: &Expression) -> Option<DVector<f64>> {
         let values: Vec<f64> = self.places.iter().map(|place| part.dual(place)[0]).collect();
         let of = |(from, weights): &(usize, Vec<f64>)| -> f64 {
@@ -70,20 +71,21 @@ impl Weak {
         column.iter().all(|value| value.is_finite()).then_some(column)
     }
 
-    /// The columns of several expressions.
+    /// Returns the columns of several expressions.
     pub(super) fn columns(&self, parts: &[Expression]) -> Option<DMatrix<f64>> {
         let columns: Option<Vec<DVector<f64>>> = parts.iter().map(|part| self.column(part)).collect();
         columns.map(|columns| DMatrix::from_columns(&columns))
     }
 
-    /// Squared errors of a weighted sum, one for each window, over the mean square of the right side.
+    /// Returns the squared error of a weighted sum for each window, divided by the mean square of the right
+    /// side.
     pub(super) fn errors(&self, parts: &[Expression], weights: &[f64]) -> Option<Vec<f64>> {
         let off = self.columns(parts)? * DVector::from_column_slice(weights) - &self.right;
         let size = self.right.norm_squared() / self.right.len().max(1) as f64;
         Some(off.iter().map(|off| off * off / size).collect())
     }
 
-    /// Refuses records that have no window.
+    /// Refuses records without a window.
     pub(super) fn checked(self) -> Result<Self, LearnError> {
         if self.windows.is_empty() {
             let problem =

@@ -1,38 +1,40 @@
-//! A nominal oscillator with a learned correction.
+//! Nominal oscillator with a learned correction.
 
 use crate::Place;
 use crate::data::{DataSet, Scale};
 use crate::flow::{Field, Slope};
 use serde::{Deserialize, Serialize};
 
-/// A learned function of the scaled position, velocity and input, smooth in all of them.
+/// Learned function of scaled position, velocity and input, smooth in all of them.
 pub trait Correction: Send + Sync {
-    /// Number of weights.
+    /// Returns the number of weights.
     fn weights(&self) -> usize;
 
-    /// Its value.
+    /// Returns the value.
     fn value(&self, weights: &[f64], z: [f64; 3]) -> f64;
 
-    /// Its value and its derivatives with respect to scaled position and velocity; those with respect to each weight go
-    /// into `slope`, which is as long as the weights.
+    /// Returns the value and its derivatives with respect to scaled position and velocity. Writes the
+    /// derivatives with respect to each weight into `slope`, which is as long as the weights.
     fn sloped(&self, weights: &[f64], z: [f64; 3], slope: &mut [f64]) -> (f64, [f64; 2]);
 }
 
-/// What a correction is added to: the nominal oscillator per inertia, and trained linear terms and dry friction.
+/// Acceleration that a correction is added to: the nominal oscillator per inertia, trained linear terms and
+/// dry friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Base {
-    /// Nominal stiffness, damping, rest position and input gain, over the inertia; zeros without a nominal simulator.
+    /// Nominal stiffness, damping, rest position and input gain, divided by the inertia; zeros without a
+    /// nominal simulator.
     pub nominal: [f64; 4],
     /// Scales of the training part.
     pub scale: Scale,
-    /// Whether there is an input.
+    /// `true` if there is an input.
     pub driven: bool,
-    /// Whether dry friction of a size to be learned is among the terms.
+    /// `true` if dry friction is among the trained terms.
     pub friction: bool,
 }
 
 impl Base {
-    /// Of a data set.
+    /// Takes nominal oscillator and scales from a data set.
     #[must_use]
     pub fn new(data: &DataSet, friction: bool) -> Self {
         let nominal = data.nominal.as_ref().map_or([0.0; 4], |simulator| {
@@ -43,7 +45,8 @@ impl Base {
         Self { nominal, scale: data.scale, driven: data.is_driven(), friction }
     }
 
-    /// Number of trained weights of the base: constant, position, velocity, and as they apply input and dry friction.
+    /// Returns the number of trained weights of the base: constant, position, velocity and, if they apply,
+    /// input and dry friction.
     #[must_use]
     pub fn weights(&self) -> usize {
         3 + usize::from(self.driven) + usize::from(self.friction)
@@ -61,7 +64,7 @@ impl Base {
         input - stiffness * (place.position - rest) - damping * place.velocity
     }
 
-    /// Features of the trained linear terms.
+    /// Returns the features of the trained linear terms.
     fn features(&self, place: &Place, [x, v, u]: [f64; 3]) -> impl Iterator<Item = f64> {
         let input = self.driven.then_some(u);
         let friction = self.friction.then_some(place.direction);
@@ -69,8 +72,10 @@ impl Base {
     }
 }
 
-/// A nominal oscillator with trained linear terms, dry friction and a correction. Weights: those of the base, then those
-/// of the correction, all in units of the training part's acceleration.
+/// Nominal oscillator with trained linear terms, dry friction and a correction.
+///
+/// The weights are those of the base, then those of the correction, all in units of the training part's
+/// acceleration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corrected<C> {
     /// The base.
@@ -111,7 +116,7 @@ impl<C: Correction> Field for Corrected<C> {
             sum += weight * feature;
         }
         debug_assert!(linear.len() >= 3, "constant, position and velocity are always trained");
-        // Said above.
+        // As asserted above.
         let [_, weight_x, weight_v] = linear.first_chunk::<3>().copied().unwrap_or_default();
         let [stiffness, damping, ..] = self.base.nominal;
         slope.position = scale.acceleration * (by_x + weight_x) / scale.position - stiffness;

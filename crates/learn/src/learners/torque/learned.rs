@@ -1,4 +1,4 @@
-//! From a corrected field to a model, for corrections of any form.
+//! Model from a corrected field, for any form of correction.
 
 use super::{Base, Corrected, Correction, Progress, progressive};
 use crate::data::DataSet;
@@ -11,12 +11,12 @@ use nalgebra::{DMatrix, DVector};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// A correction that can be kept in a file.
+/// Correction that can be stored in a file.
 pub trait Kept: Correction + Clone + Serialize + DeserializeOwned + 'static {}
 
 impl<C: Correction + Clone + Serialize + DeserializeOwned + 'static> Kept for C {}
 
-/// Stored form that a field is made from again.
+/// Stored form from which a field is rebuilt.
 #[derive(Serialize, Deserialize)]
 struct Form<C> {
     base: Base,
@@ -24,7 +24,7 @@ struct Form<C> {
     correction: C,
 }
 
-/// A corrected field with weights as a model.
+/// Builds a model from a corrected field and its weights.
 #[must_use]
 pub fn model<C: Kept>(
     learner: &'static str,
@@ -36,7 +36,7 @@ pub fn model<C: Kept>(
     let form = Form { base: field.base, correction: field.correction.clone() };
     FlowModel {
         learner,
-        // A model without a form is not kept (`FlowModel::stored`).
+        // A model without a form is not stored (`FlowModel::stored`).
         form: serde_json::to_value(form).unwrap_or_default(),
         field: Box::new(field.clone()),
         weights: weights.to_vec(),
@@ -47,7 +47,7 @@ pub fn model<C: Kept>(
     }
 }
 
-/// A model from its file.
+/// Restores a model from its file.
 ///
 /// # Errors
 /// [`LearnError::Stored`] for a file of another form.
@@ -60,7 +60,7 @@ pub fn restored<C: Kept>(learner: &'static str, stored: &Stored) -> Result<Box<d
     Ok(Box::new(FlowModel::restore(learner, stored, field)?))
 }
 
-/// Fits a field on growing pieces: the fit that validates best, with the steps of all.
+/// Fits a field on growing pieces. Returns the fit chosen by validation, with the total number of steps.
 ///
 /// # Errors
 /// As [`progressive`].
@@ -79,7 +79,7 @@ pub fn fit<C: Kept>(
     progressive(field, data, context, how, start, &validate)
 }
 
-/// The model of a fit, with bands by Laplace's approximation.
+/// Builds the model of a fit, with bands by Laplace's approximation.
 #[must_use]
 pub fn finished<C: Kept>(
     learner: &'static str,
@@ -94,7 +94,7 @@ pub fn finished<C: Kept>(
     Fitted { model: Box::new(whole), reached, steps }
 }
 
-/// Draws of the weights by Laplace's approximation.
+/// Draws weights from Laplace's approximation of the posterior.
 fn laplace(fit: &Fit, penalty: &Penalty, context: &Context<'_>) -> Posterior {
     let precision = DMatrix::from_diagonal(&DVector::from_column_slice(&penalty.precision));
     let covariance = inverse(&(&fit.information / fit.variance() + precision));

@@ -1,4 +1,5 @@
-//! Torques learned as functions: the nominal oscillator, what is linear, dry friction, and a correction of any form.
+//! Torques learned as functions: the nominal oscillator, linear terms, dry friction, and a correction of any
+//! form.
 
 mod corrected;
 mod learned;

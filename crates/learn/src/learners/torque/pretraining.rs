@@ -1,4 +1,5 @@
-//! A first guess of a field's weights without integrating: accelerations matched at states read from the records.
+//! First guess of a field's weights without integration: accelerations matched at states estimated from the
+//! records.
 
 use crate::Place;
 use crate::data::{DataSet, LocalState, Trajectory, local_states};
@@ -7,18 +8,21 @@ use crate::linear::{raised, solve};
 use dynamics::Hold;
 use nalgebra::{DMatrix, DVector};
 
-/// States that are matched at most.
+/// Largest number of states that are matched.
 const MOST_STATES: usize = 1_500;
 
-/// First guess of the error of an acceleration read from noisy positions, relative to the accelerations' spread.
+/// First guess of the error of an acceleration estimated from noisy positions, relative to the spread of the
+/// accelerations.
 const ERROR: f64 = 0.05;
 
-/// Least error that is believed, relative to the same.
+/// Lower limit of that error, relative to the same spread.
 const LEAST: f64 = 1e-3;
 
-/// Weights by Levenberg–Marquardt on accelerations, and the root mean square error they leave, relative to the spread of
-/// accelerations. The prior is weighed against the error that a first round leaves. Gradient matching: Varah, SIAM Journal
-/// on Scientific and Statistical Computing 3 (1982) 28.
+/// Fits weights to accelerations by Levenberg–Marquardt. Returns them with their root mean square error,
+/// relative to the spread of the accelerations.
+///
+/// The prior is weighted with the error that a first round leaves. Gradient matching: Varah, SIAM Journal on
+/// Scientific and Statistical Computing 3 (1982) 28.
 pub fn pretrained(
     field: &dyn Field,
     data: &DataSet,
@@ -39,7 +43,8 @@ pub fn pretrained(
     (weights, error)
 }
 
-/// States of a part with their accelerations. An input that is held jumps at the sample, where its mean acts.
+/// Returns the states of a part with their accelerations. A held input jumps at each sample; the mean of the
+/// values before and after the jump is used.
 fn matched(part: &Trajectory, data: &DataSet) -> Vec<(Place, f64)> {
     let of_state = |state: LocalState| {
         let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1))).copied();
@@ -61,7 +66,7 @@ struct Matching<'a> {
 }
 
 impl Matching<'_> {
-    /// Weights after Levenberg–Marquardt.
+    /// Returns the weights after Levenberg–Marquardt.
     fn solved(&self, start: Vec<f64>, steps: u64) -> Vec<f64> {
         let (mut weights, mut damping) = (start, 1e-3);
         let (mut objective, mut normal, mut right) = self.at(&weights);
@@ -87,13 +92,13 @@ impl Matching<'_> {
         weights
     }
 
-    /// Root mean square error of the accelerations.
+    /// Returns the root mean square error of the accelerations.
     fn rms(&self, weights: &[f64]) -> f64 {
         let off = |(place, wanted): &(Place, f64)| (wanted - self.field.acceleration(weights, place)).powi(2);
         (self.chosen.iter().map(off).sum::<f64>() / self.chosen.len().max(1) as f64).sqrt()
     }
 
-    /// Objective, normal matrix and right side at weights.
+    /// Returns objective, normal matrix and right side at given weights.
     fn at(&self, weights: &[f64]) -> (f64, DMatrix<f64>, DVector<f64>) {
         let count = weights.len();
         let mut slope = Slope { weights: vec![0.0; count], ..Slope::default() };

@@ -1,4 +1,4 @@
-//! The linear routes on NIST's linear sets.
+//! Tests of the linear routes on NIST's linear sets.
 
 use super::linear_data::{LinearSet, linear_sets};
 use super::{digits, fewest};
@@ -14,7 +14,7 @@ fn columns(set: &LinearSet) -> Vec<&[f64]> {
     set.columns.iter().map(Vec::as_slice).collect()
 }
 
-/// The routes that take a set, with their names.
+/// Returns the results on a set of the routes that accept it, with the routes' names.
 fn routes(set: &LinearSet) -> Vec<(&'static str, Solved)> {
     let columns = columns(set);
     let mut solved = vec![
@@ -43,7 +43,7 @@ fn the_data_give_the_certified_residuals() {
     for set in linear_sets() {
         let mut sum = DoubleDouble::ZERO;
         for (row, y) in set.y.iter().enumerate() {
-            // Powers are taken here, where they are not rounded to doubles: Filip's cannot bear that.
+            // Powers are computed here without rounding to doubles, which would ruin Filip's residuals.
             let fitted = match set.degree {
                 Some(_) => set
                     .coefficients
@@ -94,7 +94,7 @@ fn normal_equations_reach_their_digits_and_refuse_filip() {
     }
 }
 
-/// Standard errors follow from the residuals: as accurate as those, but never by fewer than 5.5 digits.
+/// Standard errors follow from the residuals: both have at least 5.5 digits.
 #[test]
 fn standard_errors_are_the_certified_ones() {
     for set in linear_sets() {
@@ -111,7 +111,7 @@ fn standard_errors_are_the_certified_ones() {
     }
 }
 
-/// The certifying route, on the measured sets too.
+/// Tests the certifying route, on the measured sets too.
 #[test]
 fn the_certifying_route_reaches_thirteen_digits() {
     for set in linear_sets() {
@@ -119,14 +119,14 @@ fn the_certifying_route_reaches_thirteen_digits() {
             if set.name.starts_with("NoInt") { crate::Intercept::None } else { crate::Intercept::Included };
         let fit = crate::least_squares(&columns(&set), &set.y, intercept).unwrap();
         let reached = fewest(&fit.coefficients, set.coefficients);
-        // Powers of Filip's abscissas are rounded to doubles before the route sees them.
+        // Powers of Filip's abscissas are rounded to doubles before the route receives them.
         let wanted = if set.name == "Filip" { 7.0 } else { 13.0 };
         assert!(reached >= wanted, "{}: {reached}", set.name);
     }
 }
 
-/// Problems drawn at random: 3 to 200 rows, 1 to 6 columns, condition numbers to 10⁵, small residuals and
-/// large. The certifying route is the truth.
+/// Tests random problems with 3 to 200 rows, 1 to 6 columns, condition numbers up to 10⁵, and small and large
+/// residuals, against the certifying route.
 #[test]
 fn promises_are_kept_on_random_problems() {
     let mut generator = seed::Seed::new(1).child("problems").generator();

@@ -1,6 +1,6 @@
-//! NIST's linear sets: definitions, data, certified values.
+//! NIST's linear sets: definitions, data and certified values.
 //!
-//! Each line of data holds y first, then the predictors, as NIST's files have it.
+//! Each line of data holds y first, then the predictors, as in NIST's files.
 //!
 //! References: Norris, J., NIST, Calibration of Ozone Monitors. Pontius, P., NIST, Load Cell
 //! Calibration. Eberhardt, K., NIST (NoInt1, NoInt2). Filippelli, A., NIST. Longley, J. W.,
@@ -9,10 +9,10 @@
 /// One of NIST's linear sets.
 pub(super) struct LinearSet {
     pub(super) name: &'static str,
-    /// Columns of the design matrix, the constant first where there is one.
+    /// Columns of the design matrix, with the constant first if there is one.
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) y: Vec<f64>,
-    /// Degree, where the model is a polynomial in the second column with a constant.
+    /// Degree of the polynomial, if the model is a polynomial in the second column with a constant.
     pub(super) degree: Option<usize>,
     pub(super) coefficients: &'static [f64],
     pub(super) std_errors: &'static [f64],
@@ -35,7 +35,7 @@ pub(super) fn linear_sets() -> Vec<LinearSet> {
     ]
 }
 
-/// Powers 0 to `degree`, each rounded once where they are not whole numbers below 2⁵³.
+/// Returns the powers 0 to `degree`. Each is rounded once unless it is a whole number below 2⁵³.
 fn powers(x: &[f64], degree: usize) -> Vec<Vec<f64>> {
     (0..=degree).map(|power| x.iter().map(|x| x.powi(power as i32)).collect()).collect()
 }
@@ -171,13 +171,13 @@ fn longley() -> LinearSet {
     }
 }
 
-/// The scatter of Wampler3; Wampler4 and 5 have 100 and 10,000 times as much.
+/// Scatter of Wampler3; Wampler4 and 5 have 100 and 10,000 times as much.
 const SCATTER: [f64; 21] = [
     759.0, -2048.0, 2048.0, -2048.0, 2523.0, -2048.0, 2048.0, -2048.0, 1838.0, -2048.0, 2048.0, -2048.0,
     1838.0, -2048.0, 2048.0, -2048.0, 2523.0, -2048.0, 2048.0, -2048.0, 759.0,
 ];
 
-/// A polynomial of the fifth degree in x = 0, 1, …, 20 with all coefficients 1, plus scatter.
+/// Creates a polynomial of the fifth degree in x = 0, 1, …, 20 with all coefficients 1, plus scatter.
 fn wampler(name: &'static str, scatter: f64) -> LinearSet {
     let x: Vec<f64> = (0..=20).map(f64::from).collect();
     let columns = powers(&x, 5);
@@ -221,7 +221,8 @@ fn wampler(name: &'static str, scatter: f64) -> LinearSet {
     LinearSet { name, columns, y, degree: Some(5), coefficients: &[1.0; 6], std_errors, residual_std_dev }
 }
 
-/// Coefficients 1, 0.1, …, 10⁻⁵: NIST's values have five decimals, exact integers over 10⁵.
+/// Creates the set with coefficients 1, 0.1, …, 10⁻⁵. NIST's values have five decimals: exact integers over
+/// 10⁵.
 fn wampler_2() -> LinearSet {
     let x: Vec<f64> = (0..=20).map(f64::from).collect();
     let y = (0..=20_i64)

@@ -1,4 +1,4 @@
-//! The nonlinear routes on NIST's nonlinear sets.
+//! Tests of the nonlinear routes on NIST's nonlinear sets.
 
 use super::nonlinear_sets::{NonlinearSet, easier, harder};
 use super::{digits, fewest};
@@ -15,9 +15,9 @@ fn sets() -> Vec<NonlinearSet> {
     easier().into_iter().chain(harder()).collect()
 }
 
-/// The data are NIST's: at the certified parameters they give the certified sum of squares, to ten
-/// digits or to the rounding of the residuals. (Only Lanczos2 needs the latter: with 40 digits its sum is
-/// 2.22994281272524e-11, right to 10.1.)
+/// The data are NIST's: at the certified parameters they give the certified sum of squares, to ten digits or
+/// to the rounding of the residuals. (Only Lanczos2 needs the second criterion: with 40 digits its sum is
+/// 2.22994281272524e-11, right to 10.1 digits.)
 #[test]
 fn the_data_give_the_certified_sums() {
     for set in sets() {
@@ -52,7 +52,7 @@ fn the_jacobians_are_the_derivatives() {
     }
 }
 
-/// Both solvers from one start.
+/// Solves with both solvers from one start.
 fn solve(set: &NonlinearSet, start: &[f64], limits: Limits) -> [(&'static str, LeastSquaresSolution); 2] {
     let bounds = Bounds::none(start.len());
     [
@@ -78,7 +78,7 @@ fn both_routes_solve_every_set_from_both_starts() {
     }
 }
 
-/// With a budget that ends anywhere on the way nothing else is called converged.
+/// Wherever the budget ends, only the solution is called converged.
 #[test]
 fn a_budget_that_ends_on_the_way_is_never_called_converged() {
     for set in sets() {
@@ -102,8 +102,8 @@ fn a_budget_that_ends_on_the_way_is_never_called_converged() {
     }
 }
 
-/// Far out, BoxBOD's and Misra1a's models are constant to rounding: a local "minimum" on which solvers
-/// that look at steps or gains report success.
+/// Far from the solution the models of BoxBOD and Misra1a are constant up to rounding: a local "minimum" at
+/// which solvers with criteria on steps or gains report success.
 #[test]
 fn a_plateau_is_no_minimum() {
     for set in sets().into_iter().filter(|set| set.name == "BoxBOD" || set.name == "Misra1a") {
@@ -117,7 +117,7 @@ fn a_plateau_is_no_minimum() {
     }
 }
 
-/// Starts far from NIST's own: whatever a search says, "converged" means a stationary point.
+/// Starts far from NIST's own: "converged" always means a stationary point.
 #[test]
 fn whatever_is_called_converged_is_stationary() {
     let mut generator = seed::Seed::new(0).child("starts").generator();
@@ -145,8 +145,8 @@ fn whatever_is_called_converged_is_stationary() {
     }
 }
 
-/// Each parameter in turn is kept 2 % away from its certified value, toward 0: its bound has to bind, with
-/// the descent pressing against it, and the gradient to vanish in the others.
+/// Each parameter in turn is kept 2 % away from its certified value, toward 0. Its bound has to bind, with
+/// the descent pressing against it, and the gradient has to vanish in the others.
 #[test]
 fn bounds_are_met_where_they_bind() {
     let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();

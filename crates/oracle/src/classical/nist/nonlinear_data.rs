@@ -1,4 +1,4 @@
-//! The observations of NIST's nonlinear sets.
+//! Observations of NIST's nonlinear sets.
 
 #[rustfmt::skip]
 pub(super) const MISRA_X: [f64; 14] = [
@@ -33,7 +33,7 @@ pub(super) const LANCZOS_X: [f64; 24] = [
     0.85, 0.90, 0.95, 1.00, 1.05, 1.10, 1.15,
 ];
 
-/// Six digits of 0.0951·exp(−x) + 0.8607·exp(−3x) + 1.5576·exp(−5x).
+/// Values of 0.0951·exp(−x) + 0.8607·exp(−3x) + 1.5576·exp(−5x), to six digits.
 #[rustfmt::skip]
 pub(super) const LANCZOS_2_Y: [f64; 24] = [
     2.51340, 2.04433, 1.66840, 1.36642, 1.12323, 0.926890, 0.767934, 0.638878, 0.533784, 0.447936,
@@ -104,7 +104,7 @@ pub(super) const ECKERLE_4_Y: [f64; 35] = [
     0.0074357, 0.0022732, 0.0008800, 0.0004579, 0.0002345, 0.0001586, 0.0001143, 0.0000710,
 ];
 
-/// Breakdown strengths in kV: for each week the four of 180, 225, 250 and 275 °C.
+/// Breakdown strengths in kV: for each week four values each at 180, 225, 250 and 275 °C.
 #[rustfmt::skip]
 pub(super) const NELSON_Y: [f64; 128] = [
     15.00, 17.00, 15.50, 16.50, 15.50, 15.00, 16.00, 14.50, 15.00, 14.50, 12.50, 11.00, 14.00, 13.00, 14.00, 11.50,
@@ -117,7 +117,7 @@ pub(super) const NELSON_Y: [f64; 128] = [
     13.00, 12.50, 16.50, 16.00, 11.00, 11.50, 10.50, 10.00, 7.27, 7.50, 6.70, 7.60, 1.50, 1.00, 1.20, 1.20,
 ];
 
-/// At x = 1, 2, …, 250.
+/// Values at x = 1, 2, …, 250.
 #[rustfmt::skip]
 pub(super) const GAUSS_1_Y: [f64; 250] = [
     97.62227, 97.80724, 96.62247, 92.59022, 91.23869, 95.32704, 90.35040, 89.46235, 91.72520, 89.86916,

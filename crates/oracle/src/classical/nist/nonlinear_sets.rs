@@ -1,4 +1,4 @@
-//! NIST's nonlinear sets: models with their derivatives, starts, certified values.
+//! NIST's nonlinear sets: models with their derivatives, starts and certified values.
 //!
 //! Higher difficulty: MGH09, Thurber, BoxBOD, Rat42, MGH10, Eckerle4, Rat43. References: NIST StRD, Nonlinear
 //! Regression; Misra, D., Chwirut, D., Rust, B., Thurber, R., Eckerle, K., NIST; Daniel, Wood (1980);
@@ -8,7 +8,7 @@
 use super::nonlinear_data as data;
 use crate::classical::problem::LeastSquaresProblem;
 
-/// Value and derivatives by the parameters of a model: parameters, predictors.
+/// Model as a function of parameters and predictors: its value and its derivatives by the parameters.
 type Model = fn(&[f64], &[f64]) -> (f64, Vec<f64>);
 
 /// One of NIST's nonlinear sets.
@@ -21,7 +21,7 @@ pub(super) struct NonlinearSet {
     pub(super) starts: [&'static [f64]; 2],
     pub(super) certified: &'static [f64],
     pub(super) sum_of_squares: f64,
-    /// Certified standard deviations of the parameters, where taken over.
+    /// Certified standard deviations of the parameters; empty if not transcribed.
     pub(super) std_errors: &'static [f64],
 }
 
@@ -61,7 +61,7 @@ fn set(
     }
 }
 
-/// NIST's lower level of difficulty, and Lanczos2, Nelson and MGH17 of the average one.
+/// Returns NIST's lower level of difficulty, and Lanczos2, Nelson and MGH17 of the average level.
 pub(super) fn easier() -> Vec<NonlinearSet> {
     let mut sets = vec![
         set(
@@ -186,7 +186,7 @@ pub(super) fn easier() -> Vec<NonlinearSet> {
     sets
 }
 
-/// NIST's higher level of difficulty.
+/// Returns NIST's higher level of difficulty.
 pub(super) fn harder() -> Vec<NonlinearSet> {
     let mut sets = vec![
         set(

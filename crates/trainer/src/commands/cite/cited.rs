@@ -1,6 +1,6 @@
-//! Which entry of `literature.bib` the short citations of methods and effects stand for.
+//! Map from the short citations of methods and effects to the entries of `literature.bib`.
 
-/// Short citations as registries write them, and the keys of the works that they name.
+/// Short citations as the registries write them, and the keys of the cited works.
 pub(super) const CITED: &[(&str, &[&str])] = &[
     ("Aitken, Proc. Royal Soc. Edinburgh 55 (1935) 42", &["aitken1935"]),
     ("Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, equation 9", &["armstrong1994"]),
@@ -121,6 +121,6 @@ pub(super) const CITED: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// What a diagnosis follows, whatever it finds: the fits, the sizes of samples that are correlated, the choice of
-/// what is named.
+/// Keys of the works that every diagnosis follows, whatever it finds: on the fits, the effective size of
+/// correlated samples, and the choice of the named effects.
 pub(super) const DIAGNOSIS: &[&str] = &["barbieri2004", "geyer1992", "marquardt1963"];

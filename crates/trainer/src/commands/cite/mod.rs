@@ -1,4 +1,4 @@
-//! `trainer cite`: the literature that a run stands on, as BibTeX.
+//! `trainer cite`: the literature behind a run, as BibTeX.
 
 mod cited;
 mod used;
@@ -16,10 +16,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use used::Used;
 
-/// One entry for each work, sorted by key.
+/// Bibliography with one entry for each work, sorted by key.
 const LITERATURE: &str = include_str!("literature.bib");
 
-/// Citing the literature of runs, or of methods.
+/// Arguments of citing the literature of runs or methods.
 #[derive(Debug, Args)]
 pub(crate) struct CiteArguments {
     /// Folders of finished runs
@@ -35,7 +35,7 @@ pub(crate) struct CiteArguments {
     output: Output,
 }
 
-/// A work and who follows it.
+/// Cited work with the methods and effects that follow it.
 #[derive(Debug, Serialize)]
 struct Work {
     key: &'static str,
@@ -43,7 +43,7 @@ struct Work {
     bibtex: &'static str,
 }
 
-/// Prints the entries of what was used, each with who follows it.
+/// Prints the entries of the works that the given runs or methods follow, each with its followers.
 pub(crate) fn command(arguments: &CiteArguments) -> Result<Outcome, TrainerError> {
     let methods = Method::all()?;
     let mut used = Used { estimators: arguments.estimator.clone(), ..Used::default() };
@@ -69,7 +69,7 @@ pub(crate) fn command(arguments: &CiteArguments) -> Result<Outcome, TrainerError
 }
 
 fn works(methods: &[Method], used: &Used) -> Result<Vec<Work>, SettingsError> {
-    // By key, so that each work comes once and always at the same place.
+    // Keyed by work, so that each work is listed once and in a fixed order.
     let mut followers: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     let mut follow = |citation: &str, who: &str| {
         let found = CITED.iter().find(|(text, _)| *text == citation);
@@ -104,7 +104,7 @@ fn works(methods: &[Method], used: &Used) -> Result<Vec<Work>, SettingsError> {
     Ok(entries.iter().filter_map(work).collect())
 }
 
-/// Keys and entries of a BibTeX file whose entries are parted by blank lines.
+/// Returns the keys and entries of a BibTeX file whose entries are separated by blank lines.
 fn entries(text: &'static str) -> Vec<(&'static str, &'static str)> {
     let key = |entry: &'static str| Some(entry.split_once('{')?.1.split_once(',')?.0);
     text.split("\n\n").filter_map(|entry| Some((key(entry)?, entry.trim()))).collect()
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(used, known);
     }
 
-    /// Names and years of the short citation are those of the entry.
+    /// The entry has the names and the year of the short citation.
     #[test]
     fn an_entry_is_the_work_that_the_citation_names() {
         let entries = entries(LITERATURE);
@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// Text without accents, in either notation.
+    /// Replaces accented letters, in either notation, by plain ones.
     fn plain(text: &str) -> String {
         let text = text
             .replace("{\\AA}", "A")

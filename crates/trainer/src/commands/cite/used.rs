@@ -1,20 +1,20 @@
-//! What a finished run used, read from its folder.
+//! Methods and effects that a finished run used, read from its folder.
 
 use crate::error::TrainerError;
 use serde_json::Value;
 use std::path::Path;
 
-/// Names of what was used.
+/// Names of the estimators and effects used.
 #[derive(Debug, Default)]
 pub(super) struct Used {
     pub(super) estimators: Vec<String>,
     pub(super) effects: Vec<String>,
-    /// Whether a gap was diagnosed.
+    /// `true` if a gap was diagnosed.
     pub(super) diagnosis: bool,
 }
 
 impl Used {
-    /// Adds what the run of a folder used.
+    /// Adds the methods and effects used by the run in a folder.
     pub(super) fn add(&mut self, run: &Path) -> Result<(), TrainerError> {
         let refused = |problem: String| TrainerError::NoRun { folder: run.display().to_string(), problem };
         let result = ["result.json", "diagnosis.json"].into_iter().find(|name| run.join(name).exists());
@@ -46,7 +46,7 @@ impl Used {
                     }
                 }
             }
-            // What learns dynamics is no estimator; its works stand with the registry of learners.
+            // A learner of dynamics is not an estimator; the registry of learners names its works.
             (_, "learn") => {}
             (_, "simulate") => self.effects.extend(ids(result.get("effects"))),
             _ => return Err(refused(format!("{name} is of no task that is known here"))),
@@ -59,7 +59,7 @@ fn text_of(value: &Value) -> Option<String> {
     value.as_str().map(str::to_owned)
 }
 
-/// The `id` of every row of a list.
+/// Returns the `id` of every row of a list.
 fn ids(rows: Option<&Value>) -> Vec<String> {
     let rows = rows.and_then(Value::as_array).into_iter().flatten();
     rows.filter_map(|row| row.get("id").and_then(text_of)).collect()

@@ -1,4 +1,4 @@
-//! The arguments of `trainer compare`.
+//! Arguments of `trainer compare`.
 
 use crate::options::Output;
 use clap::{Args, ValueEnum};
@@ -38,7 +38,7 @@ pub(crate) struct CompareArguments {
     pub(crate) output: Output,
 }
 
-/// How a table is printed.
+/// Format in which a table is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
     /// Aligned columns
@@ -48,6 +48,6 @@ pub(crate) enum Format {
     /// GitHub Markdown
     #[value(alias = "md")]
     Markdown,
-    /// The page
+    /// HTML page
     Html,
 }

@@ -17,7 +17,7 @@ use results::{RunTable, RunTableTask};
 use runs::{RunFolder, SweepFolder, has_run_files, list_runs, read_run};
 use std::path::{Path, PathBuf};
 
-/// Reads the runs, puts the table together, writes and prints it.
+/// Reads the runs, builds the table, writes and prints it.
 pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerError> {
     if let Some(path) = &arguments.out {
         RunFolder::check_free(path)?;
@@ -52,14 +52,14 @@ pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerEr
     Ok(Outcome::Done)
 }
 
-/// The page on a table that is not kept.
+/// Renders the page of a table that is not saved.
 fn page(table: &RunTable) -> Result<String, TrainerError> {
     let result = serde_json::to_string_pretty(table)
         .map_err(|error| TrainerError::System { what: "the table", problem: error.to_string() })?;
     Ok(render_run_table(&RunTexts { name: "Runs side by side", result: &result, ..RunTexts::default() })?)
 }
 
-/// The folders that an argument names, in the order of their names where it is a pattern.
+/// Returns the folders that an argument names; those that match a pattern are sorted by name.
 fn paths(argument: &str) -> Result<Vec<PathBuf>, TableError> {
     let path = PathBuf::from(argument);
     if path.exists() {
@@ -70,18 +70,18 @@ fn paths(argument: &str) -> Result<Vec<PathBuf>, TableError> {
     }
     let bad = |problem: String| TableError::BadPattern { pattern: argument.to_owned(), problem };
     let matches = glob::glob(argument).map_err(|error| bad(error.to_string()))?;
-    // What cannot be looked into is no match.
+    // Paths that cannot be read do not count as matches.
     let found: Vec<PathBuf> = matches.flatten().filter(|path| path.is_dir()).collect();
     if found.is_empty() { Err(TableError::NoMatch { pattern: argument.to_owned() }) } else { Ok(found) }
 }
 
-/// What lies at a path: the runs of a sweep, a run, or the runs in a folder.
+/// Returns the entries at a path: the runs of a sweep, a single run, or the runs in a folder.
 fn at(path: &Path) -> Result<Vec<Entry>, TrainerError> {
     if SweepFolder::is_one(path) {
         let folder = SweepFolder::open(path);
         return Ok(match folder.manifest() {
             Ok(Some(manifest)) => entries(&folder, &manifest),
-            // Its one row says what is wrong.
+            // The single row states the error.
             Ok(None) | Err(_) => vec![run(path)],
         });
     }
@@ -94,7 +94,7 @@ fn at(path: &Path) -> Result<Vec<Entry>, TrainerError> {
     }
     let inside = list_runs(path)?;
     if !inside.iter().any(|run| holds_runs(&run.path)) {
-        // A folder that was meant to be a run.
+        // The folder was probably meant to be a run.
         return Ok(vec![run(path)]);
     }
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! The arguments of `trainer diagnose`.
+//! Arguments of `trainer diagnose`.
 
 use crate::options::Output;
 use crate::share::ShareOptions;
@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 use settings::nearest;
 use std::path::PathBuf;
 
-/// Where the gap between a nominal simulator and records lies, what causes it, and how far it closes.
+/// Diagnoses the gap between a nominal simulator and records: its location, its causes, and its closure by a
+/// repair.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -71,13 +72,13 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) resume: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
-    /// Most effects named together, 1 to 5 [default: 5]
+    /// Largest number of effects in one fitted set, 1 to 5 [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
     pub(crate) most_effects: Option<u8>,
     /// Effects that are not considered, by id, with commas between (`trainer list effects`)
     #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = effect)]
     pub(crate) without: Vec<String>,
-    /// Probability with which an effect is named where there is none
+    /// False-alarm probability of the search, 0.001 to 0.2: of the best candidate, by chance
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
     pub(crate) false_alarm: f64,
     /// Root of the random draws (bootstraps)
@@ -92,7 +93,7 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) output: Output,
 }
 
-/// How to read record files.
+/// Options for reading record files.
 #[derive(Debug, Clone, Args, Serialize)]
 #[command(next_help_heading = "How to read the records")]
 pub(crate) struct Reading {
@@ -109,7 +110,7 @@ pub(crate) struct Reading {
     /// The observed column
     #[arg(long, value_name = "COLUMN", alias = "angle")]
     pub(crate) value: Option<String>,
-    /// The column of the measured input; none where nothing drives the system
+    /// The column of the measured input; none if nothing drives the system
     #[arg(long, value_name = "COLUMN")]
     pub(crate) input: Option<String>,
     /// Unit of the observed column [default: from its name, else that of the simulator's coordinate]
@@ -121,20 +122,21 @@ pub(crate) struct Reading {
     /// Unit of the time column, iso for dates [default: by its header or its numbers, else s]
     #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(TimeUnit::NAMES))]
     pub(crate) time_unit: Option<String>,
-    /// Lines to read, where a file holds several series: --where joint=elbow
+    /// Lines to read, if a file holds several series: --where joint=elbow
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filter: Option<String>,
-    /// What cells without a number are: a gap (segment), rows that the file never had (drop), or an error (refuse)
+    /// Treatment of cells without a number: a gap (segment), rows that the file never had (drop), or an error
+    /// (refuse)
     #[arg(long, value_name = "CHOICE", default_value = "segment",
           value_parser = PossibleValuesParser::new(Missing::NAMES))]
     pub(crate) missing: String,
-    /// What the sensor observes [default: by the column's name, else position]
+    /// Quantity that the sensor observes [default: by the column's name, else position]
     #[arg(long, value_enum)]
     pub(crate) quantity: Option<QuantityChoice>,
     /// Rate at which to lay out a file without a time column
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub(crate) sample_rate: Option<f64>,
-    /// Where the numbers came from, where the files do not say: for the report's headline, not for the diagnosis
+    /// Origin of the numbers, if the files do not state it: for the report's headline, not for the diagnosis
     #[arg(long, value_name = "ORIGIN", value_parser = PossibleValuesParser::new(record::Origin::NAMES))]
     pub(crate) origin: Option<String>,
     /// Subtracts the mean of the observed column and of the input: for channels with an arbitrary zero
@@ -143,7 +145,7 @@ pub(crate) struct Reading {
 }
 
 impl DiagnoseArguments {
-    /// As the diagnosis takes them.
+    /// Converts the options into the settings of a diagnosis.
     pub(super) fn settings(&self) -> Settings {
         Settings {
             false_alarm: self.false_alarm,
@@ -155,7 +157,7 @@ impl DiagnoseArguments {
 }
 
 impl Default for Reading {
-    /// As without options.
+    /// Returns the values in force without any option.
     fn default() -> Self {
         Self {
             format: FormatChoice::Auto,
@@ -177,7 +179,7 @@ impl Default for Reading {
 }
 
 impl Reading {
-    /// The options as the reader takes them.
+    /// Converts the options into those of the record reader.
     pub(crate) fn plain(&self) -> workflow::Reading {
         workflow::Reading {
             options: ReadOptions {
@@ -207,7 +209,7 @@ impl Reading {
     }
 }
 
-/// A word as configurations write it; the command line admits no other.
+/// Parses a word as configurations write it; the command line admits no other words.
 fn word<'de, T: Deserialize<'de>>(text: &'de str) -> Option<T> {
     let deserializer = IntoDeserializer::<Error>::into_deserializer(text);
     T::deserialize(deserializer).ok()
@@ -225,7 +227,7 @@ pub(crate) enum FormatChoice {
     HostLog,
 }
 
-/// What the sensor observes.
+/// Quantity that the sensor observes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum QuantityChoice {

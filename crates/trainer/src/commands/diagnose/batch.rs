@@ -1,4 +1,4 @@
-//! `trainer diagnose --batch`: every case of a folder.
+//! `trainer diagnose --batch`: diagnosis of every case in a folder.
 
 use super::arguments::DiagnoseArguments;
 use super::{kept, labels};
@@ -19,14 +19,14 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use workflow::Question;
 
-/// The file of an answer.
+/// Name of the file with an answer.
 pub(crate) const ANSWER: &str = "diagnosis.json";
-/// The file that says why a case has no answer.
+/// Name of the file that explains why a case has no answer.
 pub(crate) const FAILED: &str = "failed.json";
 
-/// A folder with records of one system.
+/// Folder with the records of one system.
 pub(super) struct Case {
-    /// Where it lies.
+    /// Path of the folder.
     pub(super) folder: PathBuf,
     pub(super) id: String,
     pub(super) records: Vec<PathBuf>,
@@ -34,8 +34,8 @@ pub(super) struct Case {
 }
 
 impl Case {
-    /// The case in a folder: its records by their names. Without one, the first is named all the same, so that reading it
-    /// says that it is not there.
+    /// Reads the case in a folder, with its records sorted by name. If there is no record, the name of a
+    /// first one is listed all the same, so that reading it reports that it is missing.
     pub(super) fn read(path: &Path) -> std::io::Result<Self> {
         let mut records = Vec::new();
         for file in std::fs::read_dir(path)? {
@@ -54,19 +54,19 @@ impl Case {
     }
 }
 
-/// What became of a case.
+/// Outcome of one case.
 enum Fate {
     Diagnosed,
     Skipped,
     Failed(FailedCase),
-    /// Another process has it in hand.
+    /// Another process is working on the case.
     Elsewhere,
 }
 
-/// How often cases in other processes' hands are looked at.
+/// Pause between checks of cases that other processes are working on.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Diagnoses the cases in parallel. A bad case is reported and the others go on.
+/// Diagnoses the cases in parallel. A case that fails is reported, and the others continue.
 pub(super) fn batch(
     arguments: &DiagnoseArguments,
     cases: &Path,
@@ -113,8 +113,9 @@ pub(super) fn batch(
     })
 }
 
-/// What becomes of the cases, by position; those that a request to stop came before are missing. Cases that another
-/// process has in hand are left to it, and taken over where it ends without an answer.
+/// Diagnoses the cases and returns their outcomes by position; cases not begun before a request to stop are
+/// missing. A case that another process is working on is left to that process, and taken over if it ends
+/// without an answer.
 fn fates(
     arguments: &DiagnoseArguments,
     cases: &[Case],
@@ -154,7 +155,7 @@ fn fates(
     fates
 }
 
-/// Diagnoses a case, unless it is answered already or another process is at it.
+/// Diagnoses a case, unless it already has an answer or another process is working on it.
 fn fate(arguments: &DiagnoseArguments, case: &Case, place: &Path) -> Fate {
     let failed = |error: TrainerError| FailedCase { id: case.id.clone(), message: error.to_string() };
     let answer = place.join(ANSWER);
@@ -177,14 +178,15 @@ fn fate(arguments: &DiagnoseArguments, case: &Case, place: &Path) -> Fate {
         Ok(()) => Fate::Diagnosed,
         Err(error) => {
             let failed = failed(error);
-            // The result of the batch says so too; that this file cannot be written is no failure of its own.
+            // The result of the batch reports the failure as well; failing to write this file is not a
+            // failure of its own.
             let _ = folder.write_json(FAILED, &failed);
             Fate::Failed(failed)
         }
     }
 }
 
-/// Writes the answer to a case, and before it what was asked.
+/// Writes the question and then the answer of a case.
 fn diagnosed(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Result<(), TrainerError> {
     let question = Question::read(&case.records, &case.nominal, &arguments.reading.plain())?;
     let first = case.records.first().unwrap_or(&case.nominal);
@@ -197,7 +199,7 @@ fn diagnosed(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> 
     Ok(folder.remove(FAILED)?)
 }
 
-/// Hands the cases to a batch system, with the options of this command line.
+/// Submits the cases to a batch system, with the options of this command line.
 fn launched(arguments: &DiagnoseArguments, cases: usize, answers: &Path) -> Result<Outcome, TrainerError> {
     let words: Vec<String> =
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
@@ -212,7 +214,8 @@ fn launched(arguments: &DiagnoseArguments, cases: usize, answers: &Path) -> Resu
     launch(&arguments.share, &work, arguments.output)
 }
 
-/// The cases in the order of their names. A folder without a record is a case too: its failure says what is missing.
+/// Lists the cases sorted by name. A folder without a record is a case too: its failure states what is
+/// missing.
 fn list(cases: &Path) -> Result<Vec<Case>, TrainerError> {
     let unreadable = |error: std::io::Error| TrainerError::Cases {
         folder: cases.display().to_string(),

@@ -1,4 +1,4 @@
-//! What a folder holds of a diagnosis: for `--resume`, and for the answers of a batch.
+//! Stored diagnoses: reading and checking a folder for `--resume` and for the answers of a batch.
 
 use super::arguments::DiagnoseArguments;
 use crate::error::{KeptError, TrainerError};
@@ -11,20 +11,20 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use workflow::{Answer, Question, nominal, series_rows};
 
-/// The event that says what was asked, before any other file of a diagnosis is there.
+/// Event that records the question; it is written before the diagnosis itself.
 const ASKED: &str = "start";
-/// The file beside an answer of a batch that says what was asked.
+/// File that records the question of a batch's answer, beside the answer.
 pub(super) const CASE_FILE: &str = "case.json";
-/// The event of a diagnosis that is there in full.
+/// Event that marks a complete diagnosis.
 pub(super) const END: &str = "end";
 
-/// All that an answer depends on, but for the program: in digests where it is long.
+/// Returns everything that an answer depends on, except for the program; long parts are given as digests.
 pub(super) fn asked(arguments: &DiagnoseArguments, question: &Question) -> Value {
     let records: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
     asked_of(arguments, &records, &nominal::digest(&question.stated))
 }
 
-/// As [`asked`], by the digests of records and simulator.
+/// Builds the value of [`asked`] from the digests of records and simulator.
 fn asked_of(arguments: &DiagnoseArguments, records: &[&str], nominal: &str) -> Value {
     json!({
         "records": records,
@@ -37,7 +37,7 @@ fn asked_of(arguments: &DiagnoseArguments, records: &[&str], nominal: &str) -> V
     })
 }
 
-/// Writes the run folder of an answer, its report last.
+/// Writes the run folder of an answer, with the report last.
 pub(super) fn keep(
     folder: &RunFolder,
     question: &Question,
@@ -58,11 +58,12 @@ pub(super) fn keep(
     Ok(())
 }
 
-/// The finished answer to a question that a folder holds; `None` where an interrupted diagnosis left it, or nothing is
-/// there yet.
+/// Reads the finished answer to a question from a folder; `None` if the diagnosis was interrupted or the
+/// folder is empty.
 ///
 /// # Errors
-/// [`RunError::Occupied`] where it holds anything else; [`KeptError`] where it holds another answer.
+/// [`RunError::Occupied`] if the folder holds anything else; [`KeptError`] if it holds the answer to another
+/// question.
 pub(super) fn finished(folder: &RunFolder, asked: &Value) -> Result<Option<DiagnosisResult>, TrainerError> {
     let path = folder.path();
     let log = folder.events()?;
@@ -93,7 +94,8 @@ fn same(folder: &Path, kept: &Value, asked: &Value) -> Result<(), KeptError> {
     })
 }
 
-/// As [`asked`], with the version of the program: an answer of a batch that has both in its case file is not given again.
+/// Returns the question as [`asked`] does, with the version of the program. An answer of a batch whose case
+/// file holds the same value is not computed again.
 pub(super) fn asked_by_batch(arguments: &DiagnoseArguments, question: &Question) -> Value {
     with_version(asked(arguments, question))
 }
@@ -105,7 +107,8 @@ fn with_version(mut asked: Value) -> Value {
     asked
 }
 
-/// That an answer of a batch was asked for with these options and by this version; answers without a case file do not say.
+/// Checks that an answer of a batch was computed with these options and by this version; answers without a
+/// case file are accepted.
 fn check_asked(
     arguments: &DiagnoseArguments,
     answer: &Path,
@@ -122,8 +125,8 @@ fn check_asked(
     same(folder, &case.asked, &with_version(asked_of(arguments, records, nominal)))
 }
 
-/// That an answer of a batch is on the records and for the simulator that lie in the case now. What an answer
-/// does not name is not compared.
+/// Checks that an answer of a batch belongs to the case's present records and nominal simulator. Digests that
+/// the answer does not state are not compared.
 pub(super) fn check_answer(
     arguments: &DiagnoseArguments,
     answer: &Path,

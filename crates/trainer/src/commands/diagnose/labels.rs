@@ -1,16 +1,17 @@
-//! What a case says of itself, for the report on a fleet: `case.toml`, or columns of its record.
+//! Labels of a case for the report on a fleet, from `case.toml` or from columns of its record.
 
 use crate::error::TrainerError;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The file in a case's folder.
+/// Name of the label file in a case's folder.
 const FILE: &str = "case.toml";
 
-/// Columns of a record that say what it is of, where they hold one value throughout.
+/// Columns of a record that label it, if they hold one value throughout.
 const COLUMNS: [&str; 3] = ["robot", "joint", "date"];
 
-/// Labels by name, of a case's folder and its first record. Those of `case.toml` displace those of the record's columns.
+/// Reads labels by name from a case's folder and its first record. Labels of `case.toml` override those of
+/// the record's columns.
 pub(super) fn read(folder: &Path, record: &Path) -> Result<BTreeMap<String, String>, TrainerError> {
     let mut labels = columns(record);
     let path = folder.join(FILE);
@@ -36,7 +37,8 @@ pub(super) fn read(folder: &Path, record: &Path) -> Result<BTreeMap<String, Stri
     Ok(labels)
 }
 
-/// The labels in a record's columns. A record that cannot be read this way has none: reading it as a record says why.
+/// Reads the labels in a record's columns. A record that cannot be parsed has none; reading it as a record
+/// reports the error.
 fn columns(path: &Path) -> BTreeMap<String, String> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let header = text.lines().next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `trainer diagnose`: where the gap between a nominal simulator and records lies, and what closes it.
+//! `trainer diagnose`: location of the gap between a nominal simulator and records, and its repair.
 
 pub(crate) mod arguments;
 pub(crate) mod batch;
@@ -20,14 +20,14 @@ use std::path::{Path, PathBuf};
 use trials::BaselineRecord;
 use workflow::{Question, Reading};
 
-/// Diagnoses the records named, or every case of a batch.
+/// Diagnoses the given records, or every case of a batch.
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
     let shared =
         [("--shard", arguments.share.shard.is_some()), ("--launcher", arguments.share.launcher.is_some())];
     if let (None, Some((option, _))) = (&arguments.batch, shared.into_iter().find(|(_, given)| *given)) {
         return Err(LaunchError::NoBatch { option }.into());
     }
-    // A folder of records may hold the simulator that they are compared with.
+    // A folder of records may hold the nominal simulator with which they are compared.
     let beside =
         arguments.records.first().map(|first| first.join("nominal.toml")).filter(|file| file.is_file());
     match (&arguments.batch, &arguments.out, arguments.nominal.as_ref().or(beside.as_ref())) {
@@ -40,16 +40,16 @@ pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerE
     }
 }
 
-/// What a diagnosis of a case is given, for those who do simpler things with it.
+/// Input of a case's diagnosis, for simpler diagnosers.
 pub(crate) struct GivenCase {
     pub(crate) nominal: Nominal,
-    /// What a diagnosis is given.
+    /// Observations that a diagnosis gets.
     pub(crate) observations: Vec<Observations>,
-    /// Positions only: none where the sensor observes something else.
+    /// Records of positions only; empty if the sensor observes something else.
     pub(crate) records: Vec<BaselineRecord>,
 }
 
-/// Reads records and their nominal simulator as a batch does.
+/// Reads records and their nominal simulator with the default options of a batch.
 pub(crate) fn given(records: &[PathBuf], nominal: &Path) -> Result<GivenCase, TrainerError> {
     let question = Question::read(records, nominal, &Reading::default())?;
     let positions = question.given.iter().filter(|given| given.quantity == Quantity::Position);
@@ -65,7 +65,8 @@ pub(crate) fn given(records: &[PathBuf], nominal: &Path) -> Result<GivenCase, Tr
 }
 
 fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
-    // Better to know before the work than after it; a new folder is made once there is an answer.
+    // Checked before the work starts rather than after it. A new folder is created only once there is an
+    // answer.
     let begun = match &arguments.out {
         Some(path) if arguments.resume && path.exists() => {
             Some(RunFolder::resume_on(&Disk::default(), path)?)
@@ -114,7 +115,7 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
     Ok(Outcome::Done)
 }
 
-/// What is done after a stage, in words.
+/// Describes the work that follows a stage.
 fn after(stage: &str) -> &'static str {
     match stage {
         "" => "measuring the record",

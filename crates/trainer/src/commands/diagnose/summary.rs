@@ -1,4 +1,4 @@
-//! The terminal's answer: one screen.
+//! Terminal output of a diagnosis, on one screen.
 
 use crate::terminal::table::table;
 use report::format::{
@@ -7,7 +7,7 @@ use report::format::{
 use results::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, MapCell, VerdictStatus, WithInterval};
 use std::path::Path;
 
-/// The answer as a person wants to read it.
+/// Formats a diagnosis for the terminal.
 pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
     let parts = [
         verdict(result),
@@ -38,7 +38,7 @@ fn verdict(result: &DiagnosisResult) -> String {
     format!("{label}\n{}", result.verdict.summary)
 }
 
-/// What is certain, what is likely, what is open, and what has no name.
+/// Lists the classes that are certain, likely and open, and the share of the gap without a name.
 fn classes(result: &DiagnosisResult) -> String {
     let statements = report::class_statements(result);
     let mut rows: Vec<Vec<String>> = statements
@@ -168,7 +168,7 @@ fn whereabouts(result: &DiagnosisResult) -> String {
     if places.is_empty() { kinds } else { format!("{kinds}\nlargest at {}", places.join("; ")) }
 }
 
-/// The significant cell with the largest value along an axis.
+/// Returns the significant cell with the largest value along an axis.
 fn worst(axis: &str, cells: &[MapCell], axis_unit: &str, unit: &str) -> Option<String> {
     let significant_cells = cells.iter().filter(|cell| cell.significant);
     let cell = significant_cells.max_by(|a, b| a.value.total_cmp(&b.value))?;

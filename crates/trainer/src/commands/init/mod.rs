@@ -1,4 +1,4 @@
-//! `trainer init`: a first look at a log, and the files to start from.
+//! `trainer init`: a first look at a log, and files to start from.
 
 use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
@@ -18,7 +18,7 @@ use workflow::guess as files;
 use workflow::read::{bias, centered, coordinate_of};
 use workflow::{WorkflowError, in_options, logs};
 
-/// A look at a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
+/// Inspects a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -44,28 +44,28 @@ pub(crate) struct InitArguments {
     output: Output,
 }
 
-/// A log and the oscillator nearest to it.
+/// Log with its nearest linear oscillator.
 struct Looked {
     path: PathBuf,
     look: Look,
     oscillator: LinearOscillator,
 }
 
-/// What was found, and what comes of it.
+/// Findings in the logs, with the files and commands that follow from them.
 struct Found {
-    /// The log whose oscillator is written.
+    /// Log whose oscillator is written: the one with the smallest standard error of the damping.
     surest: Looked,
-    /// Frequency and damping of each log, where there are several.
+    /// Frequency and damping of each log; empty for a single log.
     each: Vec<EachLog>,
     coordinate: Coordinate,
     folder: PathBuf,
     /// Names of the files with their texts.
     files: Vec<(&'static str, String)>,
-    /// What each command does, and the command.
+    /// Purpose of each suggested command, and the command.
     next: Vec<(&'static str, String)>,
 }
 
-/// One of several logs.
+/// Findings in one of several logs.
 struct EachLog {
     path: String,
     samples: usize,
@@ -73,7 +73,7 @@ struct EachLog {
     damping_ratio: Option<Estimated>,
 }
 
-/// Looks at a log, writes the files and says what it found.
+/// Inspects a log, writes the files and reports the findings.
 pub(crate) fn command(arguments: &InitArguments) -> Result<Outcome, TrainerError> {
     let found = find(arguments)?;
     let folder = RunFolder::create_at(&found.folder)?;
@@ -116,7 +116,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
             if bias { " --remove-mean" } else { "" }
         ),
     )];
-    // Only a free decay has an envelope to estimate a damping ratio from.
+    // Only a free decay has an envelope from which a damping ratio can be estimated.
     if oscillator.input_gain.is_none() {
         let path = path_from(&folder, path).display().to_string();
         files.push(("estimate.toml", files::configuration(&path, &look.source.reading.options())));
@@ -128,7 +128,8 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     Ok(Found { surest, each, coordinate, folder, files, next })
 }
 
-/// The folder for what is found in a log: its name without its ending, or with `-nominal` where that is its whole name.
+/// Returns the folder for the files of a log: its name without its extension, or its name with `-nominal`
+/// appended if the log is a folder or has no extension to remove.
 fn folder_of(log: &Path) -> PathBuf {
     let stem = PathBuf::from(log.file_stem().unwrap_or_default());
     let absolute = std::path::absolute(log).unwrap_or_else(|_| log.to_owned());
@@ -139,13 +140,14 @@ fn folder_of(log: &Path) -> PathBuf {
     PathBuf::from(format!("{name}-nominal"))
 }
 
-/// Looks at one log.
+/// Inspects one log.
 fn looked(path: &Path, reading: &Reading) -> Result<Looked, TrainerError> {
-    // A command or a voltage that stands in the file may drive the system; it does where the motion follows it.
+    // A command or a voltage in the file may drive the system; it counts as an input if the motion follows
+    // it.
     let found = looked_as(path, reading, true);
     let follows = match &found {
         Ok(found) => found.oscillator.input_gain.is_none_or(is_significant),
-        // A constant input tells nothing from a rest position.
+        // A constant input cannot be distinguished from a rest position.
         Err(TrainerError::Workflow(WorkflowError::Identify { .. })) => false,
         Err(_) => true,
     };
@@ -156,7 +158,7 @@ fn is_significant(estimated: Estimated) -> bool {
     estimated.value.abs() > SIGNIFICANT * estimated.std_error
 }
 
-/// Standard errors that a number stands above zero where it is not taken for zero.
+/// Number of standard errors above zero from which a number counts as different from zero.
 const SIGNIFICANT: f64 = 3.0;
 
 fn looked_as(path: &Path, reading: &Reading, driven: bool) -> Result<Looked, TrainerError> {
@@ -182,10 +184,10 @@ impl Looked {
     }
 }
 
-/// Ratio of the frequencies of two logs from which on they are doubtful as records of one system.
+/// Ratio of the frequencies of two logs above which they probably do not belong to one system.
 const ANOTHER_SYSTEM: f64 = 1.5;
 
-/// A sentence where logs of a folder swing at frequencies that one system hardly has.
+/// Returns a warning if the logs of a folder swing at frequencies that one system hardly has.
 fn apart(each: &[EachLog]) -> Option<String> {
     let mut swinging: Vec<(f64, &str)> =
         each.iter().filter_map(|log| Some((log.natural_frequency_hz?.value, log.path.as_str()))).collect();
@@ -277,7 +279,7 @@ impl Found {
         )
     }
 
-    /// A table of the logs, where there are several, and which of them the rest is about.
+    /// Formats a table of the logs, if there are several, with a lead-in to the log that the rest is about.
     fn of_each(&self) -> String {
         if self.each.is_empty() {
             return String::new();
@@ -310,7 +312,7 @@ impl Found {
             .collect()
     }
 
-    /// A warning where the swing grows, which no damping of a passive system does.
+    /// Returns a warning if the swing grows, which no passive system does.
     fn growth(&self) -> Option<String> {
         let damping = self.surest.oscillator.damping;
         (damping.value < 0.0 && is_significant(damping)).then(|| {
@@ -318,7 +320,7 @@ impl Found {
         })
     }
 
-    /// A warning where the frequency is so uncertain that the record may hold no swing.
+    /// Returns a warning if the frequency is so uncertain that the record may hold no swing.
     fn hardly_known(&self) -> Option<String> {
         let frequency = self.surest.oscillator.natural_frequency_hz()?;
         let part = frequency.std_error / frequency.value;
@@ -331,7 +333,7 @@ impl Found {
         })
     }
 
-    /// A warning where the record is too short for its decay to show.
+    /// Returns a warning if the record is too short for its decay to show.
     fn few_cycles(&self) -> Option<String> {
         let frequency = self.surest.oscillator.natural_frequency_hz()?.value;
         let cycles = frequency * self.duration_s();
@@ -344,14 +346,15 @@ impl Found {
     }
 }
 
-/// Relative error of a natural frequency from which on it is doubtful whether anything swings: 24 made records of noise, white
-/// or red, have 5 to 15 % or no frequency.
+/// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
+/// records of noise, white or red, have 5 to 15 % or no frequency.
 const HARDLY_KNOWN: f64 = 0.04;
 
-/// Cycles below which a record says little of a decay: a diagnosis needs segments of them to hold out.
+/// Number of cycles below which a record says little about a decay: a diagnosis needs segments of them to
+/// hold out.
 const FEW_CYCLES: f64 = 3.0;
 
-/// Whether the program runs from the folder that cargo builds into, where no shell finds it by its name.
+/// Returns `true` if the program runs from cargo's build folder, where no shell finds it by its name.
 fn is_built_here() -> bool {
     let program = own_program().unwrap_or_default();
     program.ancestors().skip(1).take(2).any(|folder| folder.ends_with("target"))
@@ -361,7 +364,7 @@ fn uncertain(estimated: Estimated) -> String {
     format!("{} (standard error)", with_uncertainty(estimated.value, estimated.std_error))
 }
 
-/// The reading options that were given, as the diagnosis takes them.
+/// Formats the given reading options as options of the diagnosis.
 fn given(reading: &Reading) -> String {
     let stated = serde_json::to_value(reading).unwrap_or_default();
     let usual = serde_json::to_value(Reading::default()).unwrap_or_default();
@@ -380,7 +383,7 @@ fn given(reading: &Reading) -> String {
     changed.map(option).collect()
 }
 
-/// A word as a shell reads it back.
+/// Quotes a word for a shell.
 fn word(text: &str) -> String {
     let plain = |sign: char| sign.is_alphanumeric() || "-_./=:,+%@".contains(sign);
     if !text.is_empty() && text.chars().all(plain) {
@@ -394,7 +397,8 @@ fn path_word(path: &Path) -> String {
     word(&path.display().to_string())
 }
 
-/// The way to a file from a folder; absolute where the folder is not plainly below the working directory.
+/// Returns the path of a file relative to a folder; absolute if the folder is not clearly below the working
+/// directory.
 fn path_from(folder: &Path, file: &Path) -> PathBuf {
     if file.is_absolute() {
         return file.to_owned();

@@ -1,4 +1,4 @@
-//! What a learning study leaves: rows, tables, models, the report.
+//! Output of a learning study: rows, tables, models, the report.
 
 use super::problem::Prepared;
 use crate::error::{LearnCommandError, TrainerError};
@@ -12,24 +12,24 @@ use runs::{RunFolder, to_csv};
 use serde_json::json;
 use workflow::learning::{Method, Ready, Tried, described, row, sort, truth_of};
 
-/// A method on a problem, with what it gave.
+/// Result of a method on a problem.
 pub(super) struct Row<'a> {
     pub(super) problem: &'a Prepared,
     pub(super) ready: &'a Ready,
     pub(super) method: &'a Method<'a>,
     pub(super) tried: Tried,
-    /// The model without what it learned, and given noise.
+    /// Rows of the model with everything that it learned set to zero, and with noise as its input.
     pub(super) ablated: Vec<LearnRow>,
 }
 
 impl Row<'_> {
-    /// Where its model is kept, in the run's folder.
+    /// Returns the name of the model's file in the run's folder.
     fn model_file(&self) -> String {
         format!("model/{}/{}.safetensors", self.problem.id, self.method.id)
     }
 }
 
-/// The content of `result.json`.
+/// Builds the content of `result.json`.
 pub(super) fn result(
     study: &LearnStudy,
     problems: &[Prepared],
@@ -68,7 +68,7 @@ pub(super) fn result(
     }
 }
 
-/// Writes everything that is left to write, the report last.
+/// Writes the models, tables and results that are not written yet, with the report last.
 pub(super) fn write(folder: &RunFolder, result: &LearnResult, rows: &[Row<'_>]) -> Result<(), TrainerError> {
     for row in rows {
         let Ok(judged) = &row.tried.fitted else { continue };
@@ -110,7 +110,7 @@ fn traces(rows: &[Row<'_>]) -> Vec<LearnTraceRow> {
     rows.iter().filter(|row| row.method.kind == LearnKind::Learner).flat_map(of).collect()
 }
 
-/// Free runs of the first test stretch of each problem.
+/// Collects the free runs of the first test stretch of each problem.
 fn series(rows: &[Row<'_>]) -> Vec<LearnSeriesRow> {
     let mut all = Vec::new();
     for row in rows {
@@ -135,7 +135,7 @@ fn series(rows: &[Row<'_>]) -> Vec<LearnSeriesRow> {
     all
 }
 
-/// Learned torques of learners beside the true ones.
+/// Collects the torques of the learners beside the true ones.
 fn torques(rows: &[Row<'_>]) -> Vec<LearnTorqueRow> {
     let mut all = Vec::new();
     for row in rows.iter().filter(|row| row.method.kind == LearnKind::Learner) {

@@ -1,4 +1,4 @@
-//! Checkpoints of a learning study: finished models, and the state of those in training.
+//! Checkpoints of a learning study: finished models, and the states of unfinished training.
 
 use crate::error::TrainerError;
 use crate::folders::resume::{Ledger, Resumed};
@@ -12,7 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use workflow::learning::{Judged, Method, Ready, Tried, attempt, judged};
 
-/// A finished model.
+/// Finished model.
 #[derive(Serialize, Deserialize)]
 struct Finished {
     /// Bytes of the model's file.
@@ -22,24 +22,25 @@ struct Finished {
     steps: Vec<Step>,
 }
 
-/// Conditions that methods are tried under: seed, cap on the steps, request to stop, pause, and where their work is kept.
+/// Conditions under which methods are fitted: seed, cap on the steps, request to stop, pause, and ledger for
+/// checkpoints.
 #[derive(Clone, Copy)]
 pub(super) struct Trying<'a> {
     pub(super) seed: u64,
     pub(super) max_steps: Option<u64>,
     pub(super) cancel: &'static Cancel,
-    /// Steps of its trace after which a training is stopped, to be gone on with later.
+    /// Number of steps of its trace after which a training pauses, to be resumed later.
     pub(super) pause_after: Option<u64>,
     pub(super) ledger: &'a Ledger,
 }
 
 impl Trying<'_> {
-    /// The seed of a method on a problem.
+    /// Returns the seed of a method on a problem.
     pub(super) fn seed_of(&self, problem: &str, method: &Method<'_>) -> Seed {
         Seed::new(self.seed).child("learn").child(problem).child(method.id)
     }
 
-    /// Makes a method's model of a data set, or takes the one that was finished before, and scores it.
+    /// Fits a method to a data set, or restores the model that was finished before, and scores it.
     pub(super) fn tried(
         &self,
         problem: &str,
@@ -64,7 +65,7 @@ impl Trying<'_> {
                 stop.request();
             }
         };
-        // One that was paused before it could be told is paused at the same step again.
+        // A training that was paused but not yet reported pauses at the same step again.
         pause_where_due(place.seen().steps.len());
         let observe = |step: &Step| {
             let mut seen = place.seen();
@@ -92,12 +93,12 @@ impl Trying<'_> {
     }
 }
 
-/// Place where the state of one training is kept.
+/// Place where the state of one training is stored.
 struct Place<'a> {
     ledger: &'a Ledger,
     name: &'a str,
     begun: Instant,
-    /// Time that programs before this one spent.
+    /// Time spent by earlier processes, in seconds.
     earlier: f64,
     seen: Mutex<Seen>,
 }
@@ -109,7 +110,7 @@ struct Seen {
     failure: Option<TrainerError>,
 }
 
-/// A state with the steps before it.
+/// State of a training with the steps before it.
 #[derive(Serialize, Deserialize)]
 struct InTraining {
     state: Vec<u8>,

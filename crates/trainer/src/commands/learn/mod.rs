@@ -1,4 +1,4 @@
-//! `task = "learn"`: learners beside baselines, on records that they never saw.
+//! `task = "learn"`: learners and baselines, scored on records that they never saw.
 
 mod keep;
 mod kept;
@@ -26,10 +26,10 @@ use serde_json::json;
 use std::time::Instant;
 use workflow::learning::{Method, Ready, ablation_rows, methods};
 
-/// A training is kept every ten seconds, at the end of an epoch.
+/// Checkpoint settings of a training: every ten seconds, at the end of an epoch.
 const KEPT: CheckpointSettings = CheckpointSettings { interval_s: 10.0, interval_steps: None };
 
-/// Prepares every data set, fits every method on each, keeps going where one fails, and puts the table together.
+/// Prepares every data set, fits every method on each, continues if one fails, and builds the table.
 pub(crate) fn learn(
     arguments: &ExperimentArguments,
     study: &LearnStudy,
@@ -50,19 +50,19 @@ pub(crate) fn learn(
     perform(&Study { study, problems, folder, pool, cancel, pause_after: None, output })
 }
 
-/// A study whose folder is open for work.
+/// Study whose folder is open for work.
 pub(crate) struct Study<'a> {
     pub(crate) study: &'a LearnStudy,
     pub(crate) problems: Vec<Prepared>,
     pub(crate) folder: RunFolder,
     pub(crate) pool: ThreadPool,
     pub(crate) cancel: &'static Cancel,
-    /// Steps of its trace after which each training is stopped, to be gone on with later.
+    /// Number of steps of its trace after which each training pauses, to be resumed later.
     pub(crate) pause_after: Option<u64>,
     pub(crate) output: Output,
 }
 
-/// Fits every method on each data set, keeps going where one fails, and puts the table together.
+/// Fits every method on each data set, continues if one fails, and builds the table.
 pub(crate) fn perform(of: &Study<'_>) -> Result<Outcome, TrainerError> {
     let Study { study, problems, folder, pool, output, .. } = of;
     let methods = methods(&study.settings, &study.resolved)?;
@@ -89,7 +89,7 @@ pub(crate) fn perform(of: &Study<'_>) -> Result<Outcome, TrainerError> {
     Ok(Outcome::of(interrupted, true))
 }
 
-/// What the run is made of.
+/// Returns the inputs that define the run.
 pub(crate) fn beginning<'a>(
     study: &'a LearnStudy,
     pool: &ThreadPool,
@@ -104,7 +104,8 @@ pub(crate) fn beginning<'a>(
     }
 }
 
-/// Every method on every data set that is there, in the order of the configuration, whatever the threads.
+/// Fits every method on every available data set. The order is that of the configuration, whatever the number
+/// of threads.
 fn try_all<'a>(
     trying: &Trying<'_>,
     problems: &'a [Prepared],

@@ -1,4 +1,4 @@
-//! Data sets of a learning study: read or simulated.
+//! Data sets of a learning study, read or simulated.
 
 use crate::configured::read_document;
 use crate::error::{LearnCommandError, TrainerError};
@@ -14,18 +14,18 @@ use std::path::{Path, PathBuf};
 use workflow::learning::{Ready, check_record, trajectory};
 use workflow::nominal;
 
-/// A data set by name, ready or absent.
+/// Data set by name, ready or absent.
 pub(crate) struct Prepared {
     pub(crate) id: String,
     pub(crate) title: String,
     pub(crate) origin: Origin,
-    /// The set, or why its records are not there.
+    /// Data set, or the reason why its records are missing.
     pub(crate) ready: Result<Ready, String>,
-    /// The files that it depends on.
+    /// Files that it depends on.
     pub(crate) files: Vec<DataFile>,
 }
 
-/// Reads or simulates a data set. Files that are absent are no error; a set that cannot be used is.
+/// Reads or simulates a data set. Missing files are not an error; an unusable data set is.
 pub(crate) fn prepare(problem: &LearningProblem) -> Result<Prepared, TrainerError> {
     let prepared = |origin, files, ready| Prepared {
         id: problem.id.clone(),
@@ -131,7 +131,7 @@ fn files(
     Ok((Ready { data, records: trajectories.len(), missing, truth: None }, origin, read))
 }
 
-/// The files that a data set depends on, without its records being read; none where they are absent.
+/// Lists the files that a data set depends on, without reading its records; empty if they are missing.
 pub(crate) fn files_of(problem: &LearningProblem) -> Result<Vec<DataFile>, TrainerError> {
     let mut found = match &problem.source {
         LearnSource::Simulation(file) => vec![held(file)?],
@@ -149,14 +149,14 @@ pub(crate) fn files_of(problem: &LearningProblem) -> Result<Vec<DataFile>, Train
     Ok(found)
 }
 
-/// A file that the data set depends on, held to its bytes.
+/// Returns a file that the data set depends on, with the digest of its bytes.
 fn held(file: &str) -> Result<DataFile, TrainerError> {
     let bytes = std::fs::read(file)
         .map_err(|error| TrainerError::Config { file: file.to_owned(), problem: error.to_string() })?;
     Ok(DataFile { path: file.to_owned(), digest: digest(&bytes) })
 }
 
-/// The files of a folder that a name stands for, in alphabetical order.
+/// Returns the files of a folder that match a pattern, in alphabetical order.
 fn matching(problem: &LearningProblem, folder: &str, pattern: &str) -> Result<Vec<PathBuf>, TrainerError> {
     let whole = Path::new(folder).join(pattern).to_string_lossy().into_owned();
     let found = glob::glob(&whole).map_err(|error| LearnCommandError::Pattern {

@@ -1,4 +1,4 @@
-//! The terminal's answer to `task = "learn"`: a table for each data set.
+//! Terminal output of `task = "learn"`: a table for each data set.
 
 use crate::terminal::table::table;
 use record::two_digits;
@@ -8,7 +8,7 @@ use std::path::Path;
 const HEADER: [&str; 9] =
     ["method", "free run", "× noise", "horizon s", "one step", "in 95 %", "torque off", "numbers", "s"];
 
-/// The result as a person wants to read it.
+/// Formats the result for the terminal.
 pub(super) fn summary(result: &LearnResult, folder: &Path) -> String {
     let mut parts = vec![
         "errors are RMS on records never seen, in the record's unit; the horizon ends where the error passes three times \
@@ -62,7 +62,8 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
 
 fn cells(row: &LearnRow) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), two_digits);
-    // An ablation is a free run of a model that was trained already: it has no single steps and no time of its own.
+    // An ablation is a free run of a model that was trained already: it has no one-step error and no duration
+    // of its own.
     let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
     let name = match row.kind {
         LearnKind::Learner => row.id.clone(),

@@ -1,4 +1,4 @@
-//! `trainer list`.
+//! `trainer list`: estimators, learners, effects or runs.
 
 mod runs;
 
@@ -115,7 +115,8 @@ fn effects(output: Output) {
     console::result(&entries.join("\n\n"));
 }
 
-/// An effect as a paragraph of short lines: a table of all this is wider than a screen.
+/// Formats an effect as a paragraph of short lines: a table of all its properties would be wider than a
+/// screen.
 fn entry(effect: &Description) -> String {
     let mut lines = vec![
         format!(
@@ -142,7 +143,7 @@ fn entry(effect: &Description) -> String {
     lines.join("\n")
 }
 
-/// The units that listings show: of an angle, with the inertia known.
+/// Units shown in listings: those of an angle with a known inertia.
 const SI: Units = Units::Si(Coordinate::Angle);
 
 fn kind(kind: Kind) -> &'static str {

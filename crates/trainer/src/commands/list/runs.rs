@@ -1,4 +1,4 @@
-//! `trainer list runs`.
+//! `trainer list runs`: the runs in a folder.
 
 use crate::error::TrainerError;
 use crate::options::Output;
@@ -42,7 +42,7 @@ pub(crate) fn list_runs(folder: Option<&Path>, output: Output) -> Result<Outcome
     Ok(Outcome::Done)
 }
 
-/// The one row that stands for a run: of many methods the worst.
+/// Returns the row that represents a run: that of the worst method, if there are several.
 fn worst(run: &KeptRun) -> Option<&RunTableRow> {
     let error = |row: &RunTableRow| row.worst_error_percent.unwrap_or(f64::NEG_INFINITY);
     run.rows.iter().max_by(|one, other| error(one).total_cmp(&error(other)))

@@ -25,12 +25,13 @@ pub(crate) struct NewArguments {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// Writes the skeleton of an estimator of dynamics into a checkout of Ringdown: one file, its two lines in the registry and
-    /// a configuration
+    /// Writes the skeleton of an estimator of dynamics into a checkout of Ringdown: one file, its two lines
+    /// in the registry and a configuration
     Estimator {
-        /// Its identifier: small letters, digits and hyphens
+        /// Its identifier: lowercase letters, digits and hyphens
         name: String,
-        /// What is learned: from past and input to the future, a torque as a function of the state, or coefficients
+        /// Form of the model: from past and input to the future, a torque as a function of the state, or
+        /// coefficients
         #[arg(long, value_enum)]
         kind: Form,
         /// The checkout [default: the one that the current folder is in]
@@ -64,16 +65,16 @@ impl Form {
 /// Path of the learners' registry in a checkout.
 const REGISTRY: &str = "crates/learn/src/learners/mod.rs";
 
-/// The line after which a registry's entries begin.
+/// Line after which the registry's entries begin.
 const ENTRIES: &str = "pub static LEARNERS: &[Entry] = &[\n";
 
-/// Words that Rust keeps for itself and that could be names.
+/// Reserved words of Rust that could be names.
 const KEPT: [&str; 20] = [
     "abstract", "async", "box", "crate", "do", "dyn", "enum", "final", "fn", "loop", "match", "mod", "move",
     "self", "static", "super", "trait", "type", "use", "where",
 ];
 
-/// Writes the files.
+/// Writes the files of the skeleton.
 pub(crate) fn command(arguments: &NewArguments) -> Result<Outcome, TrainerError> {
     let What::Estimator { name, kind, workspace, output } = &arguments.what;
     let is_word = |word: &str| {
@@ -97,7 +98,7 @@ pub(crate) fn command(arguments: &NewArguments) -> Result<Outcome, TrainerError>
     }
     let registered = registered(&registry, &module)
         .ok_or_else(|| NewError::Registry { file: registry_path.display().to_string() })?;
-    // The registry last: until it names the file, nothing else knows of it.
+    // The registry is written last: until it names the file, nothing else knows of it.
     write_file(&source_path, filled(kind.template(), name).as_bytes())?;
     write_file(&config_path, filled(include_str!("config.txt"), name).as_bytes())?;
     write_file(&registry_path, registered.as_bytes())?;
@@ -114,7 +115,7 @@ pub(crate) fn command(arguments: &NewArguments) -> Result<Outcome, TrainerError>
     Ok(Outcome::Done)
 }
 
-/// The checkout that a folder is in.
+/// Finds the checkout that contains a folder.
 fn checkout(stated: Option<&Path>) -> Result<PathBuf, NewError> {
     let given = stated.unwrap_or(Path::new("."));
     let from = given.canonicalize().unwrap_or_else(|_| given.to_path_buf());
@@ -127,7 +128,7 @@ fn read(path: &Path) -> Result<String, NewError> {
     std::fs::read_to_string(path).map_err(|error| NewError::Unreadable { file, reason: error.to_string() })
 }
 
-/// The registry's text with a module and its entry; `None` where it has another form.
+/// Adds a module and its entry to the registry's text; `None` if the registry has an unexpected form.
 fn registered(registry: &str, module: &str) -> Option<String> {
     let line = format!("pub mod {module};\n");
     let modules = registry.lines().filter(|line| line.starts_with("pub mod "));
@@ -144,7 +145,7 @@ fn registered(registry: &str, module: &str) -> Option<String> {
     Some(format!("{before}{ENTRIES}{entries}    {module}::ENTRY,\n];{rest}"))
 }
 
-/// A template with a name in place of its own.
+/// Fills a name into a template.
 fn filled(template: &str, name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();

@@ -1,4 +1,4 @@
-//! The report on a fleet: the answers of a batch in one page.
+//! Report on a fleet: the answers of a batch in one page.
 
 use super::outliers::outliers;
 use crate::commands::diagnose::batch::{ANSWER, FAILED};
@@ -14,22 +14,22 @@ use scoring::median;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Files that say that a folder is something else than the answers of a batch.
+/// Files that show that a folder is something other than the answers of a batch.
 const OTHERS: [&str; 4] = [ANSWER, "result.json", "rigs.json", "sweep.json"];
 /// Labels that come first.
 const FIRST: [&str; 3] = ["robot", "joint", "date"];
-/// A class with this probability is likelier there than not.
+/// Probability from which a class counts as likely.
 const LIKELY: f64 = 0.5;
-/// A class with this probability is certain.
+/// Probability from which a class counts as certain.
 const CERTAIN: f64 = 0.9;
 
-/// Whether a folder holds answers of a batch, or reasons why there is none.
+/// Returns `true` if a folder holds answers of a batch, or reasons why there are none.
 pub(super) fn is_one(path: &Path) -> bool {
     let is_other = OTHERS.iter().any(|name| path.join(name).exists());
     !is_other && folders(path).iter().any(|case| case.join(ANSWER).is_file() || case.join(FAILED).is_file())
 }
 
-/// Writes `fleet.json` and `report.html` from the answers in the folders of a folder.
+/// Writes `fleet.json` and `report.html` from the answers in the subfolders of a folder.
 pub(super) fn write(folder: &RunFolder) -> Result<(), TrainerError> {
     let result = fleet(folder.path());
     let text = to_json("fleet.json", &result)?;
@@ -45,7 +45,7 @@ pub(super) fn write(folder: &RunFolder) -> Result<(), TrainerError> {
     Ok(())
 }
 
-/// The folders in a folder, by name.
+/// Returns the subfolders of a folder, sorted by name.
 fn folders(path: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
     let mut found: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
@@ -85,8 +85,8 @@ fn fleet(path: &Path) -> FleetResult {
     }
 }
 
-/// The answer in a case's folder, or why there is none; `None` in a folder of something else. What cannot be read is a
-/// failure of its case, not of the report.
+/// Reads the answer in a case's folder, or the reason why there is none; `None` if the folder is not a case.
+/// An unreadable answer is a failure of its case, not of the report.
 fn answer(folder: &Path) -> Option<Result<DiagnosisResult, String>> {
     let path = folder.join(ANSWER);
     if path.is_file() {
@@ -101,7 +101,7 @@ fn answer(folder: &Path) -> Option<Result<DiagnosisResult, String>> {
     Some(Err(failed.map_or_else(|| format!("{FAILED} cannot be read"), |failed| failed.message)))
 }
 
-/// What a case says of itself; nothing, where its answer is of a version that kept no labels.
+/// Reads the labels of a case; empty if its answer comes from a version that stored none.
 fn labels(folder: &Path) -> BTreeMap<String, String> {
     let bytes = std::fs::read(folder.join("case.json")).unwrap_or_default();
     serde_json::from_slice(&bytes).map(|file: CaseFile| file.labels).unwrap_or_default()
@@ -119,7 +119,7 @@ fn case(id: String, labels: BTreeMap<String, String>, answer: &DiagnosisResult) 
     }
 }
 
-/// The numbers of a case that others have too.
+/// Returns the numbers of a case that can be compared with those of other cases.
 fn numbers(answer: &DiagnosisResult) -> BTreeMap<String, FleetNumber> {
     let ratio = |name: &str, value: f64| (name.to_owned(), value, String::new());
     let mut all = vec![
@@ -159,7 +159,7 @@ fn classes(cases: &[FleetCase], shares: &BTreeMap<String, Vec<f64>>) -> Vec<Flee
     found
 }
 
-/// The cases by each value of a label.
+/// Groups the cases by the values of a label.
 fn groups(cases: &[FleetCase], label: &str) -> Vec<FleetGroup> {
     let mut groups: BTreeMap<&String, FleetGroup> = BTreeMap::new();
     for case in cases {

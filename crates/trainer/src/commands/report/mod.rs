@@ -1,4 +1,4 @@
-//! `trainer report`.
+//! `trainer report`: the report of a finished run, sweep or batch, rebuilt from its folder.
 
 mod fleet;
 mod outliers;
@@ -13,9 +13,9 @@ use runs::{RunFolder, SweepFolder, has_run_files};
 use serde_json::json;
 use std::path::Path;
 
-/// Makes a run's report again and puts it in place of the old one: it is derived from the other files,
-/// so nothing is lost. That of a sweep with its table, of what is there: its tasks may have been killed before they made
-/// one; that of a fleet from the answers of a batch.
+/// Rebuilds a run's report and replaces the old one. Nothing is lost, since the report is derived from the
+/// other files. For a sweep, the table is rebuilt as well from the runs that are there, since its tasks may
+/// have been killed before they wrote one. For a fleet, the report is built from the answers of a batch.
 pub(crate) fn command(run: &Path, output: Output) -> Result<Outcome, TrainerError> {
     if !run.is_dir() {
         return Err(no_run(run));

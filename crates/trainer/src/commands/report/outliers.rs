@@ -1,23 +1,24 @@
-//! Numbers that lie far from those of the other cases of a fleet.
+//! Outliers: numbers that lie far from those of the other cases of a fleet.
 
 use results::{FleetCase, FleetNumber, FleetOutlier};
 use scoring::median;
 use std::collections::BTreeMap;
 
-/// Fewest cases whose spread says something.
+/// Minimum number of cases whose spread is meaningful.
 const FEWEST: usize = 8;
-/// From here on a number is an outlier: Iglewicz and Hoaglin, How to Detect and Handle Outliers (1993).
+/// Robust z-score above which a number is an outlier: Iglewicz and Hoaglin, How to Detect and Handle Outliers
+/// (1993).
 const FARTHEST: f64 = 3.5;
-/// The median absolute deviation of a normal distribution, in standard deviations.
+/// Median absolute deviation of a normal distribution, in standard deviations.
 const NORMAL: f64 = 0.6745;
 
-/// The label whose cases alone are compared: coefficients of another joint are others.
+/// Label within which cases are compared: coefficients of different joints are not comparable.
 const ALIKE: &str = "joint";
 
-/// What is compared with each other: name, unit and joint.
+/// Key of numbers that are compared with each other: name, unit and joint.
 type Key<'a> = (&'a str, &'a str, Option<&'a str>);
 
-/// The outliers among the cases' numbers, the farthest first.
+/// Returns the outliers among the cases' numbers, the farthest first.
 pub(super) fn outliers(cases: &[FleetCase]) -> Vec<FleetOutlier> {
     let mut groups: BTreeMap<Key<'_>, Vec<(&FleetCase, f64)>> = BTreeMap::new();
     for case in cases {
@@ -37,7 +38,7 @@ pub(super) fn outliers(cases: &[FleetCase]) -> Vec<FleetOutlier> {
 fn of_group(&(name, unit, _): &Key<'_>, values: &[(&FleetCase, f64)]) -> Vec<FleetOutlier> {
     let middle = median(values.iter().map(|(_, value)| *value));
     let deviation = median(values.iter().map(|(_, value)| (value - middle).abs()));
-    // Where half of the values are equal, every other one would be infinitely far.
+    // If half of the values are equal, every other value would be infinitely far away.
     if values.len() < FEWEST || deviation <= 0.0 {
         return Vec::new();
     }
@@ -77,7 +78,7 @@ mod tests {
     fn a_number_far_from_those_of_the_same_joint_is_an_outlier() {
         let mut cases: Vec<FleetCase> =
             (0..9).map(|i| case(&format!("e{i}"), "elbow", f64::from(i))).collect();
-        // Far from the elbows, and one of several wrists.
+        // The added wrists are far from the elbows, but each is one of several.
         cases.extend((0..9).map(|i| case(&format!("w{i}"), "wrist", 100.0 + f64::from(i))));
         assert_eq!(outliers(&cases), []);
         cases.push(case("odd", "elbow", 40.0));

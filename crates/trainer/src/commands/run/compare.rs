@@ -25,10 +25,10 @@ use runs::to_csv;
 use serde_json::json;
 use std::time::Instant;
 
-/// A method's place, and its fit or why there is none.
+/// Index of a method, and its fit or the reason why there is none.
 type Fitted = (usize, Result<SeedFit, Failure>);
 
-/// Fits every method on every seed, keeps going where one fails, and puts the table together.
+/// Fits every method on every seed, continues if one fails, and builds the table.
 pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome, TrainerError> {
     let methods = choose(comparison)?;
     let start = Instant::now();
@@ -46,12 +46,12 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
     Ok(Outcome::of(interrupted, result.pass))
 }
 
-/// Whether a fit was stopped before its end, or was not begun.
+/// Returns `true` if a fit was stopped before its end or not begun.
 fn is_interrupted(fit: &Result<SeedFit, Failure>) -> bool {
     fit.as_ref().map_or_else(|failure| *failure == Failure::NotBegun, SeedFit::is_interrupted)
 }
 
-/// The methods named, or all that the paper has; in the paper's order.
+/// Returns the named methods, or all methods of the paper, in the paper's order.
 fn choose(comparison: &Comparison) -> Result<Vec<Method>, TrainerError> {
     let mut methods = Method::all()?;
     methods.retain(|method| match &comparison.methods {
@@ -61,7 +61,7 @@ fn choose(comparison: &Comparison) -> Result<Vec<Method>, TrainerError> {
     Ok(methods)
 }
 
-/// The fits of every method, in the methods' order and the seeds' order.
+/// Fits every method on every seed; returns the fits in the order of the methods and the seeds.
 fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, Failure>>>, TrainerError> {
     let seeds = seeds(run.experiment.seed, run.experiment.fit.seeds)?;
     let jobs: Vec<(usize, u64)> = methods
@@ -85,7 +85,7 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
             return Ok(Err(Failure::NotBegun));
         }
         let fit = match setting.fit(method, seed) {
-            // A disk that fails is no fault of the method's.
+            // A failing disk is not a fault of the method.
             Err(error @ (TrainerError::Run(_) | TrainerError::Resume(_))) => return Err(error),
             other => other.map_err(|error| Failure::of(&error)),
         };
@@ -107,7 +107,7 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
     Ok(by_method)
 }
 
-/// Every method's first seed without its learned part, in the methods' order.
+/// Fits every method without its learned part on the first seed, in the methods' order.
 fn ablate_all(run: &Run<'_>, methods: &[Method]) -> Vec<Vec<AblationRow>> {
     let request = Request { query_times: &[], max_steps: run.experiment.fit.max_steps, cancel: run.cancel };
     let envelope = &run.input.extraction.envelope;
@@ -128,8 +128,8 @@ fn row(method: &Method, outcome: MethodOutcome) -> MethodRow {
     }
 }
 
-/// One method's seeds as one outcome. A single seed that failed fails the method: leaving it out would
-/// flatter.
+/// Combines the fits of one method's seeds into one outcome. A single failed seed fails the method, since
+/// leaving it out would flatter the method.
 fn outcome(
     run: &Run<'_>,
     method: &Method,
@@ -171,7 +171,7 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
     let (experiment, input) = (run.experiment, &run.input);
     let libraries =
         vec![linfa(&input.extraction.envelope, input.oracle.decay_rate, experiment.fit.tolerance_percent)];
-    // The distance of what estimates something else is no error.
+    // For a method that estimates another quantity, the distance from least squares is not an error.
     let held = results.iter().filter(|row| row.is_held_to_least_squares());
     let max_error_percent =
         scoring::worst(held.filter_map(|row| row.outcome.estimate()).map(|own| own.worst_error_percent));
@@ -216,7 +216,7 @@ fn derived(run: &Run<'_>, stated: Option<f64>) -> Derived {
     let oracle = &run.input.oracle;
     let omega = run.input.extraction.envelope.omega_rad_s();
     let period = run.input.extraction.period_s;
-    // Whichever way ζ was defined, λ/ζ is the frequency that belongs to the stiffness.
+    // Whichever definition of ζ is used, λ/ζ is the frequency that belongs to the stiffness.
     let natural = if oracle.zeta == 0.0 { omega } else { oracle.decay_rate / oracle.zeta };
     let stiffness = scoring::stiffness(inertia, natural);
     Derived {
@@ -234,7 +234,7 @@ fn derived(run: &Run<'_>, stated: Option<f64>) -> Derived {
     }
 }
 
-/// Writes everything that is left to write, the report last.
+/// Writes the tables and results that are not written yet, with the report last.
 fn keep(run: &Run<'_>, result: &ComparisonResult, interrupted: bool) -> Result<(), TrainerError> {
     if interrupted {
         run.ledger.flush()?;

@@ -17,7 +17,7 @@ use results::{EstimateSummary, EstimationResult, RESULT_SCHEMA, SeedRow};
 use runs::to_csv;
 use serde_json::json;
 
-/// Fits every seed, keeps the first one's fit, reports the worst.
+/// Fits every seed, stores the fit of the first, and reports the worst error.
 pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, TrainerError> {
     let fits = fit_all(run, method)?;
     let _saving = Saving::begin();
@@ -30,7 +30,7 @@ pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, Traine
         zeta_std_error: result.estimate.zeta_std_error.or(Some(result.oracle.zeta_std_error)),
     };
     result.truth = known_truth::compare(&run.input, &answer)?;
-    // Seeds that were not begun are left out.
+    // Seeds that were not begun are missing.
     let interrupted =
         (fits.len() as u64) < run.experiment.fit.seeds || fits.iter().any(SeedFit::is_interrupted);
     keep(run, first, &result, interrupted)?;
@@ -38,8 +38,8 @@ pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, Traine
     Ok(Outcome::of(interrupted, result.pass))
 }
 
-/// Fits every seed, in parallel; the order of the result is that of the seeds. A request to stop leaves
-/// out the seeds that were not begun, apart from the first, which the result is about.
+/// Fits every seed in parallel; the results are in the order of the seeds. A request to stop skips the seeds
+/// that were not begun, except for the first, which the result describes.
 fn fit_all(run: &Run<'_>, method: &Method) -> Result<Vec<SeedFit>, TrainerError> {
     let progress = Progress::over_seeds(run.experiment.fit.seeds, run.is_silent());
     let setting = FitSetting {
@@ -111,7 +111,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
     }
 }
 
-/// Writes everything that is left to write, the report last.
+/// Writes the tables and results that are not written yet, with the report last.
 fn keep(
     run: &Run<'_>,
     first: &SeedFit,

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
     run_until(arguments, interrupt::watch()?)
 }
 
-/// As [`run`], where who stops it is known already.
+/// Runs an experiment as [`run`] does, with an existing request to stop.
 pub(crate) fn run_until(
     arguments: &ExperimentArguments,
     cancel: &'static Cancel,

@@ -1,4 +1,4 @@
-//! An experiment with all that its fits need.
+//! Experiment with everything that its fits need.
 
 use crate::error::TrainerError;
 use crate::fits::fit::SeedFit;
@@ -12,7 +12,7 @@ use results::SeedRow;
 use runs::RunFolder;
 use serde::Serialize;
 
-/// An experiment that is ready to be fitted.
+/// Experiment that is ready to be fitted.
 pub(crate) struct Run<'a> {
     pub(crate) experiment: &'a Experiment,
     pub(crate) input: Input,
@@ -20,23 +20,23 @@ pub(crate) struct Run<'a> {
     pub(crate) ledger: Ledger,
     pub(crate) pool: ThreadPool,
     pub(crate) cancel: &'static Cancel,
-    /// Steps of its trace after which each fit of an estimate is stopped, to be gone on with later.
+    /// Number of steps of its trace after which each fit of an estimate pauses, to be resumed later.
     pub(crate) pause_after: Option<u64>,
     pub(crate) output: Output,
 }
 
 impl Run<'_> {
-    /// A fit as a row, beside the oracle's decay rate.
+    /// Returns a fit as a row, with its error against the oracle's decay rate.
     pub(crate) fn row(&self, fit: &SeedFit) -> SeedRow {
         fit.row(&self.input.extraction.envelope, self.input.oracle.decay_rate)
     }
 
-    /// Whether progress is to be kept off the terminal.
+    /// Returns `true` if no progress is to be shown on the terminal.
     pub(crate) fn is_silent(&self) -> bool {
         self.output.quiet || self.output.json
     }
 
-    /// Prints a result as [`Output::print`].
+    /// Prints a result as [`Output::print`] does.
     pub(crate) fn print(
         &self,
         result: &impl Serialize,

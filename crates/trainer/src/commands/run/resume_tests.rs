@@ -1,5 +1,5 @@
-//! A whole run on a disk that fails at any of its operations, and resumed after it: the program's own functions, in
-//! this process, so that the disk can be handed in.
+//! Tests of whole runs on a disk that fails at any of its operations, and of resuming them afterwards. They
+//! call the program's own functions in this process, so that the disk can be passed in.
 
 use crate::commands::run::run_until;
 use crate::error::TrainerError;
@@ -18,7 +18,8 @@ use tempfile::TempDir;
 
 static NOBODY: Cancel = Cancel::new();
 
-/// The first five seconds of the shipped record, beside a run's folder: every run of a thousand reads and draws them.
+/// Writes the first five seconds of the shipped record beside a run's folder: each of a thousand runs reads
+/// and draws them.
 fn record(root: &Path, out: &Path) -> PathBuf {
     let path = out.with_file_name("record.csv");
     if !path.exists() {
@@ -47,20 +48,20 @@ fn run(overrides: &[&str], out: &Path, resume: bool, disk: &Disk) -> Result<Outc
     run_until(&arguments(overrides, out, resume, disk.clone()), &NOBODY)
 }
 
-/// A short run with everything in it: several fits, states kept within them, and a trained model.
+/// A short run with every part: several fits, states stored within them, and a trained model.
 const ESTIMATION: &[&str] =
     &["fit.seeds=2", "fit.max_steps=2", "estimator.hidden=[3]", "checkpoint.interval_s=0"];
 
-/// The same with several methods, one of which keeps no state within a fit.
+/// The same with several methods, one of which stores no state within a fit.
 const COMPARISON: &[&str] = &["compare.methods=ols,neural-ode", "fit.max_steps=1", "checkpoint.interval_s=0"];
 
-/// A folder for tests: in memory where there is such a place, since every run waits for the disk a hundred times.
+/// Creates a folder for tests, in memory if possible, since every run waits for the disk a hundred times.
 fn scratch() -> TempDir {
     let memory = Path::new("/dev/shm");
     if memory.is_dir() { TempDir::new_in(memory).unwrap() } else { TempDir::new().unwrap() }
 }
 
-/// Every file of a folder but those that tell the time, times taken out of the others.
+/// Reads every file of a folder except those that record times; times are removed from the others.
 fn timeless(folder: &Path) -> BTreeMap<PathBuf, String> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -94,8 +95,8 @@ fn forget_seconds(value: &mut Value) {
     }
 }
 
-/// Every operation of a run fails in turn, once or from there on for good. Whatever is there then is whole; the message
-/// names a file; and resumed on a sound disk the run ends as the one that nothing happened to.
+/// Lets every operation of a run fail in turn, either once or from then on. Every file that exists afterwards
+/// is whole, the message names a file, and the run resumed on a sound disk ends as an undisturbed one.
 fn fails_anywhere_and_is_resumed(overrides: &[&str], stride: usize, refusals: &[(Refusal, Lasts)]) {
     let root = scratch();
     let sound = root.path().join("sound");
@@ -122,7 +123,7 @@ fn fails_anywhere_and_is_resumed(overrides: &[&str], stride: usize, refusals: &[
                     );
                 }
             }
-            // Also where what failed was the flush of the last event, or tidying up after it.
+            // This also holds if the flush of the last event failed, or the cleanup after it.
             let again = run(overrides, &out, true, &Disk::default()).unwrap();
             assert_eq!(again, expected_outcome, "{first}: {message}");
             let found = timeless(&out);
@@ -146,7 +147,7 @@ fn a_comparison_survives_every_operation_of_the_disk_failing() {
     fails_anywhere_and_is_resumed(COMPARISON, 1, &BOTH);
 }
 
-/// A disk that fails while a run is resumed is no worse.
+/// A disk that fails while a run is resumed does no more harm.
 #[test]
 fn resuming_survives_every_operation_of_the_disk_failing() {
     let root = scratch();
@@ -172,7 +173,7 @@ fn resuming_survives_every_operation_of_the_disk_failing() {
     }
 }
 
-/// Killed every sixty operations, which is what it takes to begin, to take a step or two and to write the results.
+/// The run is killed every sixty operations, enough to begin, to take a step or two and to write the results.
 #[test]
 fn killed_again_and_again_it_gets_there() {
     let root = scratch();
@@ -196,7 +197,7 @@ fn killed_again_and_again_it_gets_there() {
     }
 }
 
-/// A run that was killed within its second fit.
+/// Creates the folder of a run that was killed within its second fit.
 fn half_done(root: &Path) -> PathBuf {
     let out = root.join("half");
     let counted = Arc::new(Faults::none());
@@ -215,8 +216,9 @@ fn half_done(root: &Path) -> PathBuf {
     out
 }
 
-/// Flips a byte and cuts the file, at every `stride`-th byte of every file that resuming reads: the file is refused by
-/// its name, or, of the log, the last line is left out. Never a panic, never another result.
+/// Flips a byte and cuts the file, at every `stride`-th byte of every file that resuming reads. The file is
+/// refused by its name or, for the log, the last line is dropped. There is never a panic and never another
+/// result.
 fn damaged_files_are_refused(stride: usize) {
     let root = scratch();
     let out = half_done(root.path());
@@ -249,7 +251,7 @@ fn damaged_files_are_refused(stride: usize) {
                         half_done(root.path());
                     }
                 }
-                // Refused, nothing was added.
+                // A refused run has added nothing.
                 if path.exists() {
                     std::fs::write(&path, &whole).unwrap();
                 }
@@ -265,7 +267,7 @@ fn damaged_checkpoints_logs_and_configurations_are_refused_by_name() {
     damaged_files_are_refused(41);
 }
 
-/// `cargo test -p trainer --bin trainer every_byte -- --ignored`
+/// Run with `cargo test -p trainer --bin trainer every_byte -- --ignored`.
 #[test]
 #[ignore = "every byte takes minutes"]
 fn every_byte_of_checkpoints_logs_and_configurations_counts() {
@@ -288,7 +290,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     assert!(message.contains("belongs to another run"), "{message}");
 }
 
-/// A copy of a run's folder.
+/// Copies a run's folder.
 fn copied(from: &Path, to: &Path) {
     for folder in [PathBuf::new(), PathBuf::from("checkpoints")] {
         std::fs::create_dir_all(to.join(&folder)).unwrap();
@@ -300,7 +302,7 @@ fn copied(from: &Path, to: &Path) {
     }
 }
 
-/// The bytes with one of them changed, some left out, some twice, or the rest cut off.
+/// Returns the bytes with one of them changed, some left out, some repeated, or the rest cut off.
 fn garbled(bytes: &[u8], generator: &mut impl rand::Rng) -> Vec<u8> {
     let at = generator.random_range(0..bytes.len());
     let to = generator.random_range(at..=bytes.len().min(at + 9));
@@ -315,8 +317,8 @@ fn garbled(bytes: &[u8], generator: &mut impl rand::Rng) -> Vec<u8> {
     found
 }
 
-/// Behind the seal: what another build of the program, or a hand, has sealed is refused or gone on with. It
-/// ends no run in a panic.
+/// A sealed checkpoint with a content from another build of the program, or edited by hand, is refused or
+/// resumed; it never causes a panic.
 #[test]
 fn a_sealed_checkpoint_may_hold_anything() {
     let root = scratch();
@@ -340,7 +342,8 @@ fn a_sealed_checkpoint_may_hold_anything() {
     assert!(refused > 30, "{refused}");
 }
 
-/// Checkpoints are numbered on from the last one; that there is none after it used to end the program.
+/// Checkpoints are numbered upward from the last one. A last number with no successor used to end the
+/// program.
 #[test]
 fn the_last_number_of_a_checkpoint_is_no_end() {
     let root = scratch();

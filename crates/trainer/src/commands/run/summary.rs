@@ -1,4 +1,4 @@
-//! The terminal's answer: one short screen.
+//! Terminal output of estimates and comparisons, on one short screen.
 
 use crate::terminal::table::table;
 use estimator::Ablation;
@@ -10,7 +10,7 @@ use results::{
 };
 use std::path::Path;
 
-/// The result as a person wants to read it.
+/// Formats an estimate for the terminal.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
     let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
     parts.extend([headline(result), numbers(result)]);
@@ -48,7 +48,7 @@ fn headline(result: &EstimationResult) -> String {
 fn numbers(result: &EstimationResult) -> String {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let estimate = &result.estimate;
-    // The frequency is taken as known, so that the rate has the relative error of the ratio.
+    // The frequency is taken as known, so the rate has the same relative error as the ratio.
     let error = estimate.zeta_std_error.unwrap_or_default();
     let rate_error = error * estimate.decay_rate / estimate.zeta;
     let mut rows = vec![
@@ -80,13 +80,13 @@ fn numbers(result: &EstimationResult) -> String {
     table(&[], rows)
 }
 
-/// The truth of a simulated record, and how far the answer is from it.
+/// Formats the truth of a simulated record, and the distance of the estimate from it.
 fn truth(known: Option<&TruthComparison>) -> Vec<Vec<String>> {
     let rows = known.map(report::truth_rows).unwrap_or_default();
     rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect()
 }
 
-/// A comparison as a person wants to read it: the paper's Tables 3 to 5 in one screen or two.
+/// Formats a comparison for the terminal: the paper's Tables 3 to 5 in one screen or two.
 pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
     let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
     parts.extend([
@@ -128,7 +128,7 @@ fn comparison_headline(result: &ComparisonResult) -> String {
     )
 }
 
-/// Methods whose turn had not come when the run was interrupted.
+/// Returns the methods that were not begun when the run was interrupted.
 fn waiting(result: &ComparisonResult) -> Vec<&MethodRow> {
     result.results.iter().filter(|row| !is_begun(row)).collect()
 }
@@ -212,7 +212,8 @@ fn methods(result: &ComparisonResult) -> String {
     }
 }
 
-/// Whether each learned method's value may differ from least squares, and what its learned part contributed.
+/// Formats, for each learned method, whether its value may differ from least squares, and the contribution of
+/// its learned part.
 fn contributions(result: &ComparisonResult) -> String {
     let learned = result.results.iter().filter(|row| is_begun(row) && row.family == Family::Learned);
     let rows = learned.map(|row| {
@@ -248,7 +249,7 @@ fn comparison_remarks(result: &ComparisonResult) -> String {
         .join("\n")
 }
 
-/// A damping ratio with its standard error, where it has one.
+/// Formats a damping ratio, with its standard error if it has one.
 fn ratio(zeta: f64, std_error: f64) -> String {
     let said = if std_error > 0.0 { " (standard error)" } else { "" };
     format!("{}{said}", format::with_uncertainty(zeta, std_error))
@@ -290,7 +291,7 @@ fn ending(folder: &Path) -> String {
     format!("run: {0}\nreport: {0}/report.html", folder.display())
 }
 
-/// Which clock, the sensor's rate, and what was noticed about the file.
+/// Describes the clock, the sensor's rate, and the findings in the file.
 fn clock(data: &DataSummary) -> Vec<String> {
     let mut remarks = vec![
         data.reading.sentence.clone(),

@@ -1,4 +1,4 @@
-//! The arguments of `trainer sweep`.
+//! Arguments of `trainer sweep`.
 
 use crate::options::{Output, RunOptions};
 use crate::share::ShareOptions;
@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 use experiment::sweep::Sampler;
 use std::path::PathBuf;
 
-/// Trials of a search that names no number.
+/// Default number of trials of a search.
 const TRIALS: usize = 50;
 
-/// Every combination of some keys' values.
+/// Runs every combination of some keys' values.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -56,12 +56,13 @@ pub(crate) struct SweepArguments {
     /// The experiment that every combination starts from: a TOML file
     #[arg(required_unless_present = "resume")]
     pub(crate) config: Option<PathBuf>,
-    /// What to vary: KEY=V1,V2 or KEY=A..B, both ends included; in a search also KEY={from=A,to=B,scale="log"}
+    /// Keys to vary: KEY=V1,V2 or KEY=A..B, both ends included; in a search also
+    /// KEY={from=A,to=B,scale="log"}
     #[arg(value_name = "KEY=VALUES")]
     pub(crate) axes: Vec<String>,
     #[command(flatten)]
     pub(crate) run: RunOptions,
-    /// With --resume, runs again what failed
+    /// With --resume, repeats the failed runs
     #[arg(long, requires = "resume")]
     pub(crate) failed: bool,
     #[command(flatten)]
@@ -72,14 +73,14 @@ pub(crate) struct SweepArguments {
     pub(crate) output: Output,
 }
 
-/// How points are chosen, and what they are judged by.
+/// Options for choosing points, and for the measure by which they are judged.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Search")]
 pub(crate) struct SearchOptions {
     /// Tries points drawn from ranges and choices instead of every combination
     #[arg(long, value_enum, value_name = "SAMPLER")]
     pub(crate) search: Option<SearchSampler>,
-    /// With --search, points in all [default: 50]
+    /// With --search, total number of points [default: 50]
     #[arg(long, value_name = "N", requires = "search", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub(crate) trials: Option<u16>,
     /// Number in result.json to minimize, by its dotted path [default: validation.over_noise of a study of learners,
@@ -93,16 +94,17 @@ pub(crate) struct SearchOptions {
     #[arg(long, value_name = "N", requires = "search", default_value_t = 4,
           value_parser = clap::value_parser!(u16).range(1..=1_000))]
     pub(crate) batch: u16,
-    /// Successive halving: every trial trains for so many steps of its trace (epochs of a sequence model), the best go on
+    /// Successive halving: every trial trains for this many steps of its trace (epochs of a sequence model),
+    /// the best continue
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) halving: Option<u64>,
-    /// With --halving, one trial of so many goes on, for so many times as many steps
+    /// With --halving, one in N trials continues, for N times as many steps
     #[arg(long, value_name = "N", requires = "halving", default_value_t = 3,
           value_parser = clap::value_parser!(u16).range(2..=100))]
     pub(crate) keep_one_in: u16,
 }
 
-/// How points are chosen.
+/// Method of choosing points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SearchSampler {
     /// Independent random points
@@ -121,7 +123,7 @@ impl From<SearchSampler> for Sampler {
 }
 
 impl SearchOptions {
-    /// Whether a best run is asked for.
+    /// Returns `true` if a best run is asked for.
     pub(super) fn is_one(&self) -> bool {
         self.search.is_some() || self.minimize.is_some() || self.maximize.is_some() || self.halving.is_some()
     }
@@ -132,7 +134,7 @@ impl SearchOptions {
 }
 
 impl SweepArguments {
-    /// As many threads as asked for, or one for each core.
+    /// Returns the number of threads asked for, or one for each core.
     pub(super) fn threads(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         self.run.threads.map_or_else(cores, usize::from)

@@ -1,4 +1,4 @@
-//! Making the runs of a sweep, several at a time.
+//! Execution of the runs of a sweep, several at a time.
 
 use super::frozen::{FrozenSweep, Job};
 use super::measure::value_of;
@@ -28,37 +28,39 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// `sweep.json` is written again when this many times its own writing time has passed.
+/// Pause between writes of `sweep.json`, as a multiple of the duration of a write.
 const REST: u32 = 20;
 
-/// How often a run in another process's hands is looked at.
+/// Pause between checks of a run that another process is making.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// What a run of a sweep prints: the sweep speaks for it.
+/// Output options of a run in a sweep: it prints nothing, since the sweep reports on it.
 const SILENT: Output = Output { quiet: true, json: false };
 
-/// How runs are made.
+/// Conditions under which runs are made.
 #[derive(Clone, Copy)]
 pub(super) struct Making {
     pub(super) threads: usize,
     pub(super) output: Output,
     pub(super) cancel: &'static Cancel,
-    /// Steps of its trace after which a training is stopped, to be gone on with later.
+    /// Number of steps of its trace after which a training pauses, to be resumed later.
     pub(super) pause_after: Option<u64>,
 }
 
 impl Making {
-    /// Whether nothing is to be said.
+    /// Returns `true` if nothing is to be printed.
     pub(super) fn is_silent(&self) -> bool {
         self.output.quiet || self.output.json
     }
 }
 
-/// Makes the runs on so many threads. Each run is fitted on a single one, so that its bits do not depend on them. A
-/// run that fails is reported and the others go on; a request to stop lets none begin. A run that another process has
-/// in hand is left to it, and taken over where that process ends without a result.
+/// Makes the runs on the given number of threads. Each run is fitted on a single thread, so that its bits do
+/// not depend on their number. A failed run is reported, and the others continue; after a request to stop, no
+/// further run begins. A run that another process is making is left to that process, and taken over if it
+/// ends without a result.
 ///
-/// An error is one of the sweep as a whole: what became of a run could not be kept, or no result has what a search is for.
+/// Returns an error only for a fault of the sweep as a whole: the end of a run could not be recorded, or a
+/// result lacks the measure of a search.
 pub(super) fn execute(sweep: &FrozenSweep, jobs: &[Job<'_>], making: &Making) -> Result<(), TrainerError> {
     let Making { output, cancel, .. } = *making;
     let progress = Progress::over(jobs.len() as u64, "runs", making.is_silent());
@@ -100,17 +102,17 @@ pub(super) fn execute(sweep: &FrozenSweep, jobs: &[Job<'_>], making: &Making) ->
     }
 }
 
-/// In whose hands a run was found.
+/// Process that makes or made a run.
 enum Hands {
-    /// In this process's, and this became of it.
+    /// This process made it; the run ended like this.
     Own(SweepEnd),
-    /// In none any more: another process has made it meanwhile.
+    /// No process any more: another one has made it meanwhile.
     Done,
-    /// In another process's.
+    /// Another process is making it.
     Other,
 }
 
-/// Makes a run and keeps what became of it, unless another process does or did.
+/// Makes a run and records its end, unless another process is making or has made it.
 fn claimed(
     sweep: &FrozenSweep,
     (line, config): Job<'_>,
@@ -120,7 +122,7 @@ fn claimed(
     let Some(_claim) = sweep.folder.claim(&line.digest)? else { return Ok(Hands::Other) };
     let ended = |end: &SweepEnd| match end.state {
         SweepState::Done | SweepState::Stopped => true,
-        // One that failed is made again where that was asked for, but not one that another process has just made again.
+        // A failed run is repeated if that was asked for, unless another process has just repeated it.
         SweepState::Failed => line.state != SweepState::Failed || end.run != line.run,
         SweepState::Pending | SweepState::Interrupted => false,
     };
@@ -132,9 +134,9 @@ fn claimed(
     Ok(Hands::Own(end))
 }
 
-/// The runs to be made, those that are in other processes' hands at the end.
+/// Queue of the runs to be made; runs that other processes are making are at the end.
 struct Queue<'a> {
-    /// With what was looked at before and found in another process's hands.
+    /// Runs, each with a flag that is `true` if another process was found to be making it.
     jobs: Mutex<VecDeque<(Job<'a>, bool)>>,
     said: AtomicBool,
 }
@@ -151,7 +153,7 @@ impl<'a> Queue<'a> {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
     }
 
-    /// Puts a run at the end, after a pause where it has been there before.
+    /// Moves a run to the end of the queue, after a pause if it has been there before.
     fn later(&self, job: Job<'a>, waited: bool, remark: &dyn Fn(&str)) {
         if waited {
             if !self.said.swap(true, Ordering::Relaxed) {
@@ -167,15 +169,15 @@ fn is_some<T>(shared: &Mutex<Option<T>>) -> bool {
     shared.lock().unwrap_or_else(PoisonError::into_inner).is_some()
 }
 
-/// Makes one run and says what became of it.
+/// Makes one run and returns its end.
 fn make(sweep: &FrozenSweep, (line, config): Job<'_>, making: &Making, remark: &dyn Fn(&str)) -> SweepEnd {
     let mut run = None;
-    // A panic would be a fault of the program; even so the other runs go on.
+    // A panic would be a fault of the program; even then the other runs continue.
     let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, (line, config), making, &mut run, remark)));
     let (state, message) = match made {
         Ok(Ok(Outcome::Interrupted)) => (SweepState::Interrupted, None),
         Ok(Ok(Outcome::Done | Outcome::CheckFailed)) => (SweepState::Done, None),
-        // A request to stop may also end training that has nothing to show yet.
+        // A request to stop may also end a training that has no result yet.
         Ok(Err(_)) if making.cancel.is_requested() => (SweepState::Interrupted, None),
         Ok(Err(error)) => (SweepState::Failed, Some(error.to_string())),
         Err(_) => {
@@ -184,14 +186,15 @@ fn make(sweep: &FrozenSweep, (line, config): Job<'_>, making: &Making, remark: &
         }
     };
     if let (Some(folder), Some(message)) = (&run, &message) {
-        // The sweep's own state file says so too; that this one cannot be written is no failure of its own.
+        // The sweep's own state file reports the failure as well; failing to write this file is not a failure
+        // of its own.
         let folder = RunFolder::open(&sweep.folder.path().join(folder));
         let _ = folder.record_event(FAILED, &json!({ "message": message }));
     }
     SweepEnd { digest: line.digest.clone(), state, run, message }
 }
 
-/// Reads, fits and keeps; the run's folder is made, or taken up, once its record is read.
+/// Reads, fits and saves. The run's folder is created or reopened only after its record has been read.
 fn attempt(
     sweep: &FrozenSweep,
     (line, config): Job<'_>,
@@ -229,7 +232,7 @@ fn attempt(
     }
 }
 
-/// The run's folder, open for work; `None` where an earlier attempt finished it.
+/// Returns the run's folder, open for work; `None` if an earlier attempt finished the run.
 fn opened(
     sweep: &FrozenSweep,
     line: &SweepLine,
@@ -254,8 +257,8 @@ fn opened(
     }
 }
 
-/// The folder that the run was begun in and can go on in to the same bits; `None` where there is none, or
-/// where it failed there. One that is damaged or in another process's hands is left alone, and said.
+/// Returns the folder in which the run was begun and can be resumed to the same bits; `None` if there is none
+/// or the run failed there. A folder that is damaged or in use by another process is left alone and reported.
 fn begun_before(
     sweep: &FrozenSweep,
     label: &str,
@@ -270,7 +273,7 @@ fn begun_before(
         }
         let taken_up = take_up(&Disk::default(), &path, beginning, &|_| ())?;
         if let TakenUp::Open(folder) = &taken_up {
-            // A damaged checkpoint is found out here.
+            // Opening the ledger finds damaged checkpoints.
             Ledger::open(folder, CheckpointSettings { interval_s: 10.0, interval_steps: None })?;
         }
         Ok(Some(taken_up))
@@ -282,7 +285,7 @@ fn begun_before(
     before.map(|before| (name, before))
 }
 
-/// Says at once what became of a run; fails where a result lacks what a search is for.
+/// Reports the end of a run at once; returns an error if the result lacks the measure of a search.
 fn report(
     sweep: &FrozenSweep,
     line: &SweepLine,
@@ -316,7 +319,7 @@ fn report(
     Ok(())
 }
 
-/// One line on the rows of a run.
+/// Describes the rows of a run in one line.
 fn said(rows: &[RunTableRow]) -> String {
     let bad = rows.iter().filter(|row| row.pass == Some(false)).count();
     match rows {
@@ -345,8 +348,9 @@ impl Clerk {
         Self { manifest: sweep.manifest.clone(), last: Instant::now(), rest: Duration::ZERO }
     }
 
-    /// Writes it, unless that was done just now: with thousands of runs it would take longer than these. That it
-    /// cannot be written is found out at the end, when it has to be.
+    /// Writes the manifest, unless it was written just now: with thousands of runs, writing would take longer
+    /// than the runs. Write errors are ignored here and reported at the end, when the manifest has to be
+    /// written.
     fn note(&mut self, sweep: &FrozenSweep) {
         if self.last.elapsed() < self.rest {
             return;

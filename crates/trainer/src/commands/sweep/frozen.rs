@@ -1,4 +1,4 @@
-//! The frozen list of a sweep: made and checked before the first run, or taken up again.
+//! Frozen list of a sweep: created and checked before the first run, or reopened.
 
 use super::arguments::SweepArguments;
 use super::study::Study;
@@ -16,25 +16,25 @@ use serde_json::json;
 use settings::Document;
 use std::path::Path;
 
-/// A run to be made: its line and its configuration.
+/// Run to be made: its line and its configuration.
 pub(super) type Job<'a> = (&'a SweepLine, &'a str);
 
-/// A sweep whose list of runs is settled.
+/// Sweep whose list of runs is frozen.
 pub(super) struct FrozenSweep {
     pub(super) folder: SweepFolder,
     pub(super) manifest: SweepManifest,
-    /// The runs' configurations, in the list's order.
+    /// Configurations of the runs, in the list's order.
     pub(super) configs: Vec<String>,
 }
 
 impl FrozenSweep {
-    /// Every run with its configuration, in the list's order.
+    /// Returns every run with its configuration, in the list's order.
     pub(super) fn jobs(&self) -> impl Iterator<Item = Job<'_>> {
         self.manifest.runs.iter().zip(self.configs.iter().map(String::as_str))
     }
 }
 
-/// Freezes a new sweep, or takes up the one that the arguments name.
+/// Freezes a new sweep, or reopens the one that the arguments name.
 pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerError> {
     let planned = match &arguments.config {
         Some(path) => Some((path.display().to_string(), planned(arguments, path)?)),
@@ -65,17 +65,17 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
         .map_err(|error| TrainerError::System { what: "environment.json", problem: error.to_string() })?;
     let beside = [("config.toml", planned.text.clone().into_bytes()), ("environment.json", environment)];
     if !folder.freeze(&manifest, &configs, &beside)? {
-        // Another process came first.
+        // Another process froze the sweep first.
         return take_up(folder, Some(planned));
     }
     folder.folder().record_event("start", &json!({ "name": manifest.name, "runs": manifest.runs.len() }))?;
     Ok(FrozenSweep { folder, manifest, configs })
 }
 
-/// What a configuration and axes come to.
+/// Plan that results from a configuration and axes.
 struct Planned {
     name: String,
-    /// The configuration as its file has it.
+    /// Text of the configuration file.
     text: String,
     axes: Vec<SweepAxis>,
     search: Option<SweepSearch>,
@@ -89,7 +89,8 @@ fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, Trainer
     Ok(Planned { name, text: study.text, axes, search, runs })
 }
 
-/// The manifest of a sweep that begins now. A record that cannot be read is found out here, not by its runs.
+/// Builds the manifest of a sweep that begins now. An unreadable record is reported here rather than by its
+/// runs.
 fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerError> {
     Ok(SweepManifest {
         schema: SWEEP_SCHEMA.to_owned(),
@@ -103,7 +104,7 @@ fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerE
     })
 }
 
-/// The line of a run that was not begun.
+/// Builds the manifest line of a run that was not begun.
 pub(super) fn line(run: &PlannedRun) -> SweepLine {
     SweepLine {
         number: run.number,
@@ -116,7 +117,7 @@ pub(super) fn line(run: &PlannedRun) -> SweepLine {
     }
 }
 
-/// Whether a run is still to be made, or made again.
+/// Returns `true` if a run is still to be made or repeated.
 pub(super) fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
     match line.state {
         SweepState::Pending | SweepState::Interrupted => true,
@@ -125,7 +126,7 @@ pub(super) fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
     }
 }
 
-/// The files that runs read, each once.
+/// Lists the files that the runs read, each once.
 fn records(runs: &[PlannedRun]) -> Result<Vec<SweepRecord>, TrainerError> {
     let mut records: Vec<SweepRecord> = Vec::new();
     let mut looked_at: Vec<&RunData> = Vec::new();
@@ -155,8 +156,8 @@ fn records(runs: &[PlannedRun]) -> Result<Vec<SweepRecord>, TrainerError> {
     Ok(records)
 }
 
-/// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written
-/// before the manifest, of which the frozen configurations come first.
+/// Opens a folder in which a sweep may be frozen or may have been partly frozen: it is empty, or holds only
+/// files of a sweep, at least the frozen configurations, which are written first.
 fn beginning(path: &Path) -> Result<RunFolder, RunError> {
     match RunFolder::check_free(path) {
         Ok(()) => Ok(RunFolder::open(path)),
@@ -175,7 +176,7 @@ fn beginning(path: &Path) -> Result<RunFolder, RunError> {
     }
 }
 
-/// Goes on with a frozen sweep; what the command line asks for, if anything, has to be the same.
+/// Reopens a frozen sweep. If the command line names a sweep, it has to be the same one.
 fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep, TrainerError> {
     let shown = || folder.path().display().to_string();
     let manifest = folder
@@ -210,7 +211,7 @@ fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep,
     Ok(FrozenSweep { folder, manifest, configs })
 }
 
-/// A run's frozen configuration, if it still is what its digest says.
+/// Reads a run's frozen configuration, if it still has the recorded digest.
 fn frozen_config(folder: &SweepFolder, line: &SweepLine) -> Result<String, SweepCommandError> {
     let path = folder.path().join(&line.config);
     let file = path.display().to_string();
@@ -223,12 +224,12 @@ fn frozen_config(folder: &SweepFolder, line: &SweepLine) -> Result<String, Sweep
     text.filter(holds).ok_or_else(lost)
 }
 
-/// The overrides of a run in brackets, with a leading blank.
+/// Returns the overrides of a run in parentheses, with a leading space.
 fn named(overrides: &[String]) -> String {
     if overrides.is_empty() { String::new() } else { format!(" ({})", overrides.join(" ")) }
 }
 
-/// What differs between the frozen list and another, in words.
+/// Describes the first difference between the frozen list and the planned one.
 fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned) -> Option<String> {
     if let Some(said) = other_search(manifest.search.as_ref(), planned.search.as_ref()) {
         return Some(said);
@@ -243,12 +244,12 @@ fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned)
         return Some(format!("run {}{}: {said}", line.number, named(&line.overrides)));
     }
     let (then, now) = (manifest.runs.len(), planned.runs.len());
-    // The first of them are the same: an axis has become longer or shorter at its end.
+    // The common runs are equal: an axis has become longer or shorter at its end.
     let is_proposed_later = manifest.search.as_ref().is_some_and(|search| search.sampler.looks_at_results());
     (then != now && !(is_proposed_later && now < then)).then(|| format!("{then} runs then, {now} now"))
 }
 
-/// What differs between two ways to search, in words; what was reached on the way is no difference.
+/// Describes the difference between two searches; their progress does not count.
 fn other_search(then: Option<&SweepSearch>, now: Option<&SweepSearch>) -> Option<String> {
     let words = |search: Option<&SweepSearch>| {
         let Some(search) = search else { return "every combination".to_owned() };

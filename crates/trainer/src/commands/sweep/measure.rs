@@ -1,4 +1,4 @@
-//! What trials are judged by: a number of a run's `result.json`, by its dotted path.
+//! Measure by which trials are judged: a number of a run's `result.json`, named by its dotted path.
 
 use crate::error::SweepCommandError;
 use experiment::sweep::SweptTask;
@@ -7,7 +7,7 @@ use runs::SweepFolder;
 use serde_json::Value;
 use settings::nearest;
 
-/// The measure where none is named: never one of the test part.
+/// Returns the default measure of a task: never one of the test part.
 pub(super) fn default_measure(task: SweptTask) -> &'static str {
     match task {
         SweptTask::Learn => "validation.over_noise",
@@ -16,7 +16,7 @@ pub(super) fn default_measure(task: SweptTask) -> &'static str {
     }
 }
 
-/// What a reader should know of a measure.
+/// Returns a warning that readers need with a measure.
 pub(crate) fn warning(measure: &str) -> Option<String> {
     let is_test = measure.split('.').any(|part| part == "test");
     is_test.then(|| {
@@ -27,10 +27,12 @@ pub(crate) fn warning(measure: &str) -> Option<String> {
     })
 }
 
-/// The measure of a result: `None` where the result has no number there, as that of a training that failed.
+/// Returns the measure of a result: `None` if the result has no number there, as after a training that
+/// failed.
 ///
-/// Of a learning study, a path that is none from the top is looked for in the rows of the learners, and the mean over
-/// these counts, so that several data sets are weighed alike. A part of a path is a key, a position, or in a list the `id`.
+/// In a learning study, a path that does not start at the top is looked up in the rows of the learners. The
+/// measure is then the mean over these rows, so that several data sets have equal weight. Each part of a path
+/// is a key or, in a list, a position or an `id`.
 ///
 /// # Errors
 /// [`SweepCommandError::NoMeasure`] for a path that the result does not have.
@@ -59,12 +61,13 @@ pub(crate) fn measured(search: &SweepSearch, result: &Value) -> Result<Option<f6
     })
 }
 
-/// A finite number; a truth counts as 1, which makes `pass` a measure.
+/// Returns a finite number; `true` counts as 1, so that `pass` can be a measure.
 fn number(value: &Value) -> Option<f64> {
     value.as_f64().or_else(|| value.as_bool().map(f64::from)).filter(|number| number.is_finite())
 }
 
-/// What stands at a path. A part behind a `null` stands for a number that there is none of.
+/// Returns the value at a path. Any path below a `null` leads to that `null`, which counts as a missing
+/// number.
 fn walk<'a>(value: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(value, |value, part| match value {
         Value::Object(fields) => fields.get(part),
@@ -77,7 +80,7 @@ fn walk<'a>(value: &'a Value, path: &str) -> Option<&'a Value> {
     })
 }
 
-/// Paths of the numbers in an object, lists left out.
+/// Collects the paths of the numbers in an object; lists are skipped.
 fn numbers(value: &Value, path: &str, found: &mut Vec<String>) {
     match value {
         Value::Object(fields) => {
@@ -91,7 +94,7 @@ fn numbers(value: &Value, path: &str, found: &mut Vec<String>) {
     }
 }
 
-/// The measure of a run by now: of one that is done, of one that was stopped on a rung; `None` of one that failed.
+/// Returns the measure of a run so far, including a run that was stopped on a rung; `None` for a failed run.
 pub(crate) fn value_of(
     folder: &SweepFolder,
     search: &SweepSearch,

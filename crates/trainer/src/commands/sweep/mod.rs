@@ -1,4 +1,4 @@
-//! `trainer sweep`: every combination of some keys' values, or a search among them, resumable.
+//! `trainer sweep`: every combination of some keys' values, or a search among them; resumable.
 
 pub(crate) mod arguments;
 mod execute;
@@ -25,7 +25,7 @@ use runs::SweepFolder;
 use serde::Serialize;
 use serde_json::json;
 
-/// What a script is told: the table, and where everything is.
+/// JSON output: the table and the sweep's folder.
 #[derive(Serialize)]
 struct Answer<'a> {
     folder: String,
@@ -33,7 +33,7 @@ struct Answer<'a> {
     table: &'a RunTable,
 }
 
-/// Freezes or takes up, runs what is missing, puts the table together.
+/// Freezes or reopens a sweep, makes the missing runs, and builds the table.
 pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
     let mut sweep = frozen::settle(arguments)?;
@@ -55,7 +55,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     let _saving = Saving::begin();
     let table = finish(&sweep.folder, &mut sweep.manifest)?;
     let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
-    // Who asks to stop when the last run is done has missed it.
+    // A request to stop that comes after the last run interrupts nothing.
     let interrupted = cancel.is_requested() && own().any(|(_, line)| is_missing(line, false));
     let event = if interrupted { "interrupted" } else { "end" };
     sweep.folder.folder().record_event(event, &json!({ "runs": made, "shard": shard.to_string() }))?;
@@ -75,7 +75,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     Ok(arguments.share.outcome(if is_fine { Outcome::Done } else { Outcome::CheckFailed }))
 }
 
-/// Makes what is missing of the runs that are this process's, and gives how many it made.
+/// Makes the missing runs of this process's share and returns their number.
 fn make(
     arguments: &SweepArguments,
     sweep: &mut FrozenSweep,
@@ -101,7 +101,7 @@ fn make(
     Ok(jobs.len())
 }
 
-/// Prints the table, for scripts or for readers.
+/// Prints the table, as JSON or as text.
 fn tell(output: Output, path: &str, table: &RunTable) -> Result<(), TrainerError> {
     if output.json {
         output.print(&Answer { folder: path.to_owned(), table }, String::new)?;
@@ -115,7 +115,7 @@ fn tell(output: Output, path: &str, table: &RunTable) -> Result<(), TrainerError
     Ok(())
 }
 
-/// Hands the frozen list to a batch system: its tasks need no configuration.
+/// Submits the frozen list to a batch system; its tasks need no configuration.
 fn launched(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<Outcome, TrainerError> {
     let path = sweep.folder.path();
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned()).display().to_string();
@@ -132,12 +132,12 @@ fn launched(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<Outcome, 
     launch(&arguments.share, &work, arguments.output)
 }
 
-/// Whether a search has to wait for results before it knows what to run.
+/// Returns `true` if a search needs results before it can choose the next runs.
 fn looks_at_results(search: &SweepSearch) -> bool {
     search.sampler.looks_at_results() || search.halving.is_some()
 }
 
-/// Whether a run is done and every row of it within its tolerance.
+/// Returns `true` if a run is done and all its rows are within their tolerances.
 fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
     let name = of_sweep::run_name(manifest, line);
     line.state == SweepState::Done
@@ -148,8 +148,8 @@ fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
             .all(|row| !row.state.is_bad() && row.pass != Some(false))
 }
 
-/// Writes the manifest, the table and the page until nothing has changed meanwhile: of several shares that end at
-/// the same time the last leaves them complete.
+/// Writes the manifest, the table and the page until nothing has changed meanwhile: of several shares that
+/// end at the same time, the last leaves them complete.
 pub(crate) fn finish(sweep: &SweepFolder, manifest: &mut SweepManifest) -> Result<RunTable, TrainerError> {
     loop {
         sweep.refresh(manifest)?;

@@ -1,7 +1,8 @@
-//! A search: batches of proposals, and rungs of successive halving.
+//! Search among runs: batches of proposals, and rungs of successive halving.
 //!
-//! Li, Jamieson, DeSalvo, Rostamizadeh, Talwalkar, Hyperband, Journal of Machine Learning Research 18 (2018) 6765: of n
-//! trials on a rung the best ⌊n/η⌋ go on to the next, which is η times as long. The last rung has no end.
+//! Li, Jamieson, DeSalvo, Rostamizadeh, Talwalkar, Hyperband, Journal of Machine Learning Research 18 (2018)
+//! 6765: of n trials on a rung, the best ⌊n/η⌋ continue on the next rung, which is η times as long. The last
+//! rung has no limit.
 
 use super::execute::{Making, execute};
 use super::frozen::{FrozenSweep, Job, is_missing, line};
@@ -13,10 +14,11 @@ use record::counted;
 use results::{SweepEnd, SweepLine, SweepManifest, SweepRung, SweepRungValue, SweepSearch, SweepState};
 use runs::SweepFolder;
 
-/// Name that the process which searches holds.
+/// Name under which a searching process claims the sweep.
 const HELD: &str = "search";
 
-/// Makes the runs of a search that looks at results, until it is done or somebody asks to stop; gives how many it made.
+/// Makes the runs of a search that depends on results until it is done or a stop is requested; returns the
+/// number of runs made.
 pub(super) fn search(
     sweep: &mut FrozenSweep,
     search: &SweepSearch,
@@ -33,8 +35,8 @@ pub(super) fn search(
     }
 }
 
-/// Proposals in batches. What a batch holds follows from the results of all before it, whoever made them and how many at
-/// a time.
+/// Makes runs in batches of proposals. Each batch depends only on the results of all earlier ones, not on the
+/// processes that made them or on the number of parallel runs.
 fn batches(
     sweep: &mut FrozenSweep,
     search: &SweepSearch,
@@ -64,7 +66,7 @@ fn batches(
     }
 }
 
-/// What each run costs: the measure, its sign turned where more is better.
+/// Returns the cost of each run: the measure, with its sign reversed if it is maximized.
 fn costs(
     folder: &SweepFolder,
     manifest: &SweepManifest,
@@ -81,8 +83,8 @@ fn cost(search: &SweepSearch, value: f64) -> f64 {
     if search.maximize { -value } else { value }
 }
 
-/// Rungs. What each trial had reached stands in the manifest once a rung is done, so that a resumed search promotes the
-/// same trials.
+/// Makes the rungs of successive halving. The manifest records the measures of all trials once a rung is
+/// done, so that a resumed search promotes the same trials.
 fn halved(sweep: &mut FrozenSweep, failed_too: bool, making: &Making) -> Result<usize, TrainerError> {
     let mut made = 0;
     while let Some(rung) = Rung::next(&sweep.manifest) {
@@ -107,7 +109,7 @@ fn halved(sweep: &mut FrozenSweep, failed_too: bool, making: &Making) -> Result<
     Ok(made)
 }
 
-/// Writes down what the trials of a rung had reached, and stops those that do not go on.
+/// Records the measures of the trials on a rung, and stops the trials that do not continue.
 fn close(sweep: &mut FrozenSweep, rung: &Rung) -> Result<(), TrainerError> {
     let Some(search) = sweep.manifest.search.clone() else { return Ok(()) };
     let own = sweep.manifest.runs.iter().filter(|line| rung.numbers.contains(&line.number));
@@ -133,18 +135,18 @@ fn close(sweep: &mut FrozenSweep, rung: &Rung) -> Result<(), TrainerError> {
     Ok(sweep.folder.refresh(&mut sweep.manifest)?)
 }
 
-/// A rung that is to be run.
+/// Rung that is to be run.
 struct Rung {
-    /// Its place, from 0.
+    /// Index of the rung, from 0.
     place: usize,
-    /// Steps of the trace after which it stops; `None` for the last one.
+    /// Number of steps of the trace after which the rung stops; `None` for the last rung.
     steps: Option<u64>,
     /// Numbers of its trials.
     numbers: Vec<usize>,
 }
 
 impl Rung {
-    /// The rung after those that the manifest has; `None` after the last.
+    /// Returns the rung after those in the manifest; `None` after the last.
     fn next(manifest: &SweepManifest) -> Option<Self> {
         let search = manifest.search.as_ref()?;
         let halving = search.halving.as_ref()?;
@@ -159,7 +161,7 @@ impl Rung {
     }
 }
 
-/// Numbers of trials and lengths of the rungs.
+/// Returns the number of trials and the length in steps of each rung.
 fn ladder(trials: usize, keep_one_in: usize, first_steps: u64) -> Vec<(usize, Option<u64>)> {
     let mut rungs = Vec::new();
     let (mut count, mut steps) = (trials, first_steps);
@@ -172,7 +174,8 @@ fn ladder(trials: usize, keep_one_in: usize, first_steps: u64) -> Vec<(usize, Op
     rungs
 }
 
-/// The best trials of a rung, of equal ones the first; what failed is not among them, unless nothing else is left.
+/// Returns the numbers of the best trials of a rung. Of equal trials the first is better; failed trials come
+/// last, so they are included only if there are too few others.
 fn best(search: &SweepSearch, values: &[SweepRungValue], count: usize) -> Vec<usize> {
     let mut order: Vec<(f64, usize)> = values
         .iter()

@@ -1,4 +1,4 @@
-//! What a sweep varies and on which configuration: from a command line, or from a manifest.
+//! Keys that a sweep varies and the configuration to which they apply, from a command line or a manifest.
 
 use super::arguments::SweepArguments;
 use super::measure::default_measure;
@@ -13,23 +13,23 @@ use seed::Seed;
 use settings::Document;
 use std::path::Path;
 
-/// A configuration with what is varied on it.
+/// Configuration with the keys that are varied.
 pub(super) struct Study {
-    /// The configuration as its file has it.
+    /// Text of the configuration file.
     pub(super) text: String,
     document: Document,
     varied: Varied,
 }
 
 enum Varied {
-    /// All combinations.
+    /// All combinations of values.
     Axes(Vec<Axis>),
     /// Points of a space.
     Space { dimensions: Vec<Dimension>, sampler: Sampler, seed: Seed },
 }
 
 impl Study {
-    /// The study that a command line asks for.
+    /// Builds the study that a command line asks for.
     pub(super) fn of_arguments(arguments: &SweepArguments, config: &Path) -> Result<Self, TrainerError> {
         let (text, mut document) = read_with_text(config)?;
         if let Some(seed) = arguments.run.seed {
@@ -48,7 +48,7 @@ impl Study {
         Ok(Self { text, document, varied: Varied::Space { dimensions, sampler: sampler.into(), seed } })
     }
 
-    /// The study that a manifest tells of, whose configuration is read again.
+    /// Rebuilds the study that a manifest describes; its configuration is read again.
     fn of_manifest(manifest: &SweepManifest, search: &SweepSearch) -> Result<Self, TrainerError> {
         let (text, mut document) = read_with_text(Path::new(&manifest.config))?;
         document.apply_override(&format!("seed={}", search.seed))?;
@@ -63,7 +63,7 @@ impl Study {
         Ok(Self { text, document, varied })
     }
 
-    /// Start of the sweep folder's name.
+    /// Returns the start of the sweep folder's name.
     pub(super) fn name(&self, config: &Path) -> String {
         let stem = config.file_stem().unwrap_or_default().to_string_lossy();
         let name = self.document.get("name").and_then(|leaf| leaf.value.as_str()).unwrap_or(&stem);
@@ -71,7 +71,7 @@ impl Study {
         format!("{name}-{what}")
     }
 
-    /// What is varied, as a manifest has it.
+    /// Returns the varied keys in the form of the manifest.
     pub(super) fn axes(&self) -> Vec<SweepAxis> {
         let described = |dimension: &Dimension| {
             let (values, scale) = dimension.described();
@@ -86,7 +86,7 @@ impl Study {
         }
     }
 
-    /// The runs that are known before any is made.
+    /// Plans the runs that are known before any is made.
     pub(super) fn first_runs(&self, trials: usize) -> Result<Vec<PlannedRun>, SweepCommandError> {
         match &self.varied {
             Varied::Axes(axes) => Ok(plan(&self.document, combinations(axes)?, 1, &registries())?),
@@ -95,14 +95,14 @@ impl Study {
         }
     }
 
-    /// The runs after those that were tried.
+    /// Plans the runs that follow those already tried.
     fn next_runs(&self, tried: &[TriedPoint], count: usize) -> Result<Vec<PlannedRun>, SweepCommandError> {
         let Varied::Space { dimensions, sampler, seed } = &self.varied else { return Ok(Vec::new()) };
         let points = propose(dimensions, *sampler, seed, tried, count)?;
         Ok(plan(&self.document, points, tried.len() + 1, &registries())?)
     }
 
-    /// How it searches, where it does.
+    /// Returns the settings of the search; `None` if the study is no search.
     pub(super) fn search(
         &self,
         arguments: &SweepArguments,
@@ -139,9 +139,9 @@ impl Study {
     }
 }
 
-/// The runs that a search proposes next, from the costs of those before.
+/// Plans the runs that a search proposes next, from the costs of the earlier ones.
 ///
-/// The configuration is read again where it was; that it still says what it said is checked on the first run.
+/// The configuration is read again from its file; its first runs must have the digests of the manifest.
 pub(super) fn proposed(
     manifest: &SweepManifest,
     search: &SweepSearch,
@@ -162,7 +162,7 @@ pub(super) fn proposed(
     Ok(study.next_runs(&tried, count)?)
 }
 
-/// The space of a study file and a command line, which displaces what the file says of a key.
+/// Builds the search space from a study file and a command line, which overrides the file key by key.
 fn space(document: &mut Document, arguments: &[String]) -> Result<Vec<Dimension>, SweepError> {
     let own: Vec<Dimension> =
         arguments.iter().map(|argument| Dimension::parse(argument)).collect::<Result<_, _>>()?;
@@ -177,7 +177,7 @@ fn space(document: &mut Document, arguments: &[String]) -> Result<Vec<Dimension>
     Ok(dimensions)
 }
 
-/// The seed in force.
+/// Returns the seed in force.
 fn seed_of(document: &Document) -> u64 {
     let seed = document.get("seed").and_then(|leaf| leaf.value.as_integer());
     seed.and_then(|seed| u64::try_from(seed).ok()).unwrap_or_default()

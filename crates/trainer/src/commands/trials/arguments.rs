@@ -1,11 +1,12 @@
-//! The arguments of `trainer trials`.
+//! Arguments of `trainer trials`.
 
 use crate::options::{ExperimentArguments, Output, RunOptions};
 use crate::share::ShareOptions;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores.
+/// Withheld-effect trials: creates cases whose truth is sealed, diagnoses them blind, opens the seals, and
+/// scores the answers.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -46,7 +47,7 @@ pub(crate) struct TrialsArguments {
     /// Opens the seals of these trials and scores their answers again
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "resume", "seed", "launcher"])]
     pub(crate) score: Option<PathBuf>,
-    /// Ends with exit code 1 where the whole 95 % interval of a score lies on the wrong side of its bar
+    /// Ends with exit code 1 if the whole 95 % interval of a score lies on the wrong side of its bar
     #[arg(long)]
     pub(crate) check: bool,
     #[command(flatten)]
@@ -56,7 +57,7 @@ pub(crate) struct TrialsArguments {
 }
 
 impl From<&ExperimentArguments> for TrialsArguments {
-    /// Trials whose configuration was named without the command.
+    /// Converts the arguments of a configuration that was named without the command.
     fn from(arguments: &ExperimentArguments) -> Self {
         Self {
             config: arguments.config.clone(),

@@ -1,4 +1,5 @@
-//! Asking the diagnosis: a process of its own for each group of cases, which gets that group's folder and nothing else.
+//! Blind diagnosis of the cases: each group of cases is diagnosed in a separate process, which gets that
+//! group's folder and nothing else.
 
 use super::arguments::TrialsArguments;
 use super::files::{self, WITHOUT};
@@ -18,13 +19,14 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How often finished answers are counted.
+/// Pause between counts of finished answers.
 const LOOK: Duration = Duration::from_millis(50);
-/// How long a process that was asked to stop may go on, shorter than this one's own patience; its answers are written
-/// whole or not at all.
+/// Time for which a process may continue after it was asked to stop. It is shorter than the patience of this
+/// process; answers are written whole or not at all.
 const GRACE: Duration = Duration::from_millis(300);
 
-/// Has every case of the share without an answer diagnosed; gives the messages of those that failed, `None` where interrupted.
+/// Diagnoses every case of the share that has no answer; returns the messages of the failed cases, or `None`
+/// if interrupted.
 pub(crate) fn ask(
     arguments: &TrialsArguments,
     folder: &RunFolder,
@@ -43,7 +45,7 @@ pub(crate) fn ask(
     let count = missing_ids.len();
     let truths = folder.path().join(files::TRUTHS);
     if count > 0 && truths.exists() {
-        // What got no answer when it was asked gets none now.
+        // A case that got no answer when it was first diagnosed gets none now.
         let known = open::failed(folder)?;
         if missing_ids.iter().all(|id| known.contains_key(id.as_str())) {
             return Ok(Some(known));
@@ -74,8 +76,8 @@ pub(crate) fn ask(
     Ok(Some(failed))
 }
 
-/// Why cases have no answer, by case: those of `failed` and those that other shares have found; and the number of cases
-/// that nobody has looked at yet.
+/// Returns the reasons why cases have no answer, by case: those of `failed` and those found by other shares.
+/// Also returns the number of cases that no share has diagnosed yet.
 pub(crate) fn answered(
     folder: &RunFolder,
     manifest: &TrialsManifest,
@@ -96,7 +98,7 @@ pub(crate) fn answered(
     (failed, open)
 }
 
-/// Diagnoses one group; `None` where interrupted.
+/// Diagnoses one group; `None` if interrupted.
 fn group_answers(
     arguments: &TrialsArguments,
     folder: &Path,
@@ -133,7 +135,7 @@ fn group_answers(
     if cancel.is_requested() || status == Some(130) {
         return Ok(None);
     }
-    // The process lists failed cases as errors too; what it says beside its result is heard where there is none.
+    // The process also prints failed cases as errors; its error output is used only if there is no result.
     serde_json::from_str(&text).map(Some).map_err(|_| {
         let said = errors.join().unwrap_or_default();
         let code = status.map_or_else(|| "a signal".to_owned(), |code| format!("exit code {code}"));
@@ -141,7 +143,7 @@ fn group_answers(
     })
 }
 
-/// Waits for a process, counting meanwhile; once an interruption is requested, for a while only.
+/// Waits for a process, and counts answers meanwhile. After a request to stop, waits only for a limited time.
 fn watch(child: &mut Child, cancel: &Cancel, count: &dyn Fn()) -> std::io::Result<Option<i32>> {
     let mut requested: Option<Instant> = None;
     loop {
@@ -150,7 +152,7 @@ fn watch(child: &mut Child, cancel: &Cancel, count: &dyn Fn()) -> std::io::Resul
         }
         count();
         if cancel.is_requested() {
-            // A terminal has asked the process to stop as well; a signal to this process alone has not.
+            // Ctrl-C on a terminal reaches the process as well; a signal sent to this process alone does not.
             let since = *requested.get_or_insert_with(Instant::now);
             if since.elapsed() > GRACE {
                 child.kill()?;
@@ -160,7 +162,7 @@ fn watch(child: &mut Child, cancel: &Cancel, count: &dyn Fn()) -> std::io::Resul
     }
 }
 
-/// Reads a pipe to its end beside everything else: a full one would stop the process.
+/// Reads a pipe to its end in a thread of its own: a full pipe would block the process.
 fn drained(pipe: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<String> {
     std::thread::spawn(move || {
         let mut text = String::new();
@@ -171,7 +173,7 @@ fn drained(pipe: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<
     })
 }
 
-/// Names of the answers that are there.
+/// Returns the names of the existing answers.
 fn names(answers: &Path) -> BTreeSet<std::ffi::OsString> {
     let entries = std::fs::read_dir(answers).into_iter().flatten().flatten();
     entries.filter(|entry| entry.path().join(files::ANSWER).exists()).map(|entry| entry.file_name()).collect()

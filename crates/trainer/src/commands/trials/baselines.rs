@@ -1,17 +1,17 @@
-//! Simpler diagnosers, one line each.
+//! Simpler diagnosers, used as baselines.
 
 use crate::commands::diagnose::GivenCase;
 use diagnosis::single_effect;
 use trials::{WEAK_FORM, WEAK_FORM_METHOD, weak_form};
 
-/// A simpler diagnoser: its id, what it does in a sentence, and the effect that it names in a case, or nothing.
+/// Simpler diagnoser: its id, a sentence about its method, and the effect that it names in a case, if any.
 pub(super) struct Diagnoser {
     pub(super) id: &'static str,
     pub(super) method: &'static str,
     pub(super) names: fn(&GivenCase) -> Option<&'static str>,
 }
 
-/// Every simpler diagnoser that looks at records.
+/// All simpler diagnosers that use records.
 pub(super) const DIAGNOSERS: &[Diagnoser] = &[
     Diagnoser {
         id: WEAK_FORM,

@@ -1,4 +1,4 @@
-//! Going through all cases.
+//! Parallel processing of all cases.
 
 use crate::error::TrainerError;
 use crate::terminal::progress::Progress;
@@ -6,7 +6,7 @@ use estimator::Cancel;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-/// What `one` gives of every case, side by side and in order; `None` where interrupted.
+/// Applies `one` to every case in parallel and returns the results in order; `None` if interrupted.
 pub(crate) fn each<C: Sync, T: Send>(
     cases: &[C],
     pool: &ThreadPool,

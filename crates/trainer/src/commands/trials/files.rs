@@ -3,19 +3,19 @@
 use crate::error::TrialsError;
 use runs::RunFolder;
 
-/// Begins the name of the groups that it is told to leave an effect out for.
+/// Start of the names of groups for which the diagnosis excludes an effect.
 pub(crate) const WITHOUT: &str = "without-";
 
 /// Name of the manifest in the folder.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
-/// The group of cases that the diagnosis considers every effect for.
+/// Name of the group for which the diagnosis considers every effect.
 pub(crate) const FULL: &str = "full";
 
 /// Folder of the truths.
 pub(crate) const TRUTHS: &str = "truth";
 
-/// The file of an answer.
+/// Name of the file with an answer.
 pub(crate) const ANSWER: &str = "diagnosis.json";
 
 pub(crate) fn truth_name(id: &str) -> String {
@@ -30,10 +30,10 @@ pub(crate) fn answer_name(group: &str, id: &str) -> String {
     format!("answers/{group}/{id}/{ANSWER}")
 }
 
-/// The file of what was said of cases without an answer.
+/// Name of the file with the messages of cases without an answer.
 pub(crate) const FAILED: &str = "failed.json";
 
-/// The text of a file of the trials.
+/// Reads a text file of the trials.
 pub(crate) fn text(folder: &RunFolder, name: &str) -> Result<String, TrialsError> {
     let path = folder.path().join(name);
     std::fs::read_to_string(&path).map_err(|error| TrialsError::Unreadable {

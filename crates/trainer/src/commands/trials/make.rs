@@ -1,4 +1,4 @@
-//! Making cases: what the diagnosis is given goes to disk, truths stay sealed in memory.
+//! Creation of cases: the diagnosis's input is written to disk, truths stay sealed in memory.
 
 use super::arguments::TrialsArguments;
 use super::each::each;
@@ -15,13 +15,13 @@ use std::collections::BTreeMap;
 use trials::{Case, Hidden, TrialPlan};
 use truth::{Sealed, digest};
 
-/// All cases: what was published of them, and their sealed truths, in the same order.
+/// All cases: their published manifest and their sealed truths, in the same order.
 pub(crate) struct Made {
     pub(crate) manifest: TrialsManifest,
     pub(crate) sealed: Vec<Sealed<Hidden>>,
 }
 
-/// Makes every case; `None` where interrupted. The manifest is on disk when this returns.
+/// Creates every case; `None` if interrupted. The manifest is on disk when this returns.
 pub(crate) fn make(
     arguments: &TrialsArguments,
     plan: &TrialPlan,
@@ -74,7 +74,7 @@ fn write(folder: &RunFolder, case: &Case) -> Result<(TrialsManifestLine, Sealed<
     Ok((TrialsManifestLine { id: case.id.clone(), group, truth_digest, files }, sealed))
 }
 
-/// The manifest of a folder; `None` where there is none yet.
+/// Reads the manifest of a folder; `None` if there is none yet.
 pub(crate) fn read_manifest(folder: &RunFolder) -> Result<Option<TrialsManifest>, TrialsError> {
     if !folder.path().join(MANIFEST).exists() {
         return Ok(None);
@@ -86,7 +86,7 @@ pub(crate) fn read_manifest(folder: &RunFolder) -> Result<Option<TrialsManifest>
     })
 }
 
-/// Whether cases made again are those that were published.
+/// Checks that the recreated cases equal the published ones.
 fn compare(
     folder: &RunFolder,
     published: &TrialsManifest,
@@ -122,7 +122,7 @@ fn compare(
     Ok(())
 }
 
-/// Banks that were asked for and not made, as the manifest has them.
+/// Lists the banks that were asked for and not created, in the form of the manifest.
 fn left_out(plan: &TrialPlan) -> Vec<LeftOutBank> {
     plan.left_out_banks()
         .iter()

@@ -33,15 +33,15 @@ use std::path::PathBuf;
 use std::time::Instant;
 use trials::{Gate, TrialPlan, Trials, case_rows, misses_a_bar, misses_the_gate, most_common};
 
-/// The file of the scores.
+/// Name of the file with the scores.
 const RESULT: &str = "result.json";
 
-/// Makes, diagnoses, opens and scores; or scores again what is there.
+/// Creates, diagnoses, opens and scores the cases, or scores existing answers again.
 pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerError> {
     run(arguments, interrupt::watch()?)
 }
 
-/// As [`command`], where who stops it is known already.
+/// Runs the trials as [`command`] does, with an existing request to stop.
 pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcome, TrainerError> {
     let start = Instant::now();
     let pool = as_experiment(arguments).thread_pool()?;
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
     if let Some(Launcher::Slurm) = arguments.share.launcher {
         return launched(arguments, &plan, &folder);
     }
-    // What another share has made is taken as it is.
+    // Cases that another share has created are used as they are.
     let published =
         arguments.share.shard.and_then(|_| make::read_manifest(&folder).transpose()).transpose()?;
     let (manifest, made) = match published {
@@ -68,7 +68,8 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
             None => return interrupted(&folder, "making the cases", &go_on(&folder)),
         },
     };
-    // The diagnosis takes time, and other shares have cases to make and answers to give meanwhile.
+    // The folder is released: the diagnosis takes time, and other shares have to create cases and write
+    // answers meanwhile.
     let path = folder.path().to_owned();
     drop(folder);
     let Some(failed) = ask::ask(arguments, &RunFolder::open(&path), &manifest, cancel)? else {
@@ -79,18 +80,18 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
     conclude(arguments, &plan, &pool, asked, (cancel, start))
 }
 
-/// Trials whose share was diagnosed.
+/// Trials whose share has been diagnosed.
 struct Asked {
-    /// The folder, which nobody holds meanwhile.
+    /// Folder of the trials, which is not locked meanwhile.
     path: PathBuf,
     manifest: TrialsManifest,
-    /// `None` where another share has made the cases.
+    /// Created cases; `None` if another share has created them.
     made: Option<make::Made>,
-    /// Why cases of this share have no answer.
+    /// Reasons why cases of this share have no answer.
     failed: BTreeMap<String, String>,
 }
 
-/// Opens the seals and scores, once the last answer is in; says what is open before that.
+/// Opens the seals and scores once all answers are in; before that, reports the number of missing answers.
 fn conclude(
     arguments: &TrialsArguments,
     plan: &TrialPlan,
@@ -104,7 +105,7 @@ fn conclude(
         return share_done(arguments, &folder, &asked.manifest, open);
     }
     if arguments.share.shard.is_some() && asked.path.join(RESULT).exists() {
-        // The share that gave the last answer was faster.
+        // Another share was the last to finish and has already scored.
         let file = asked.path.join(RESULT).display().to_string();
         let result = serde_json::from_str(&files::text(&folder, RESULT)?);
         let result = result.map_err(|error| TrialsError::Unreadable { file, problem: error.to_string() })?;
@@ -116,7 +117,7 @@ fn conclude(
     };
     let Some(made) = made else { return interrupted(&folder, "making the cases", &go_on(&folder)) };
     folder.write_json(files::FAILED, &failed)?;
-    // The last answer is in: the truths may be seen.
+    // All answers are in, so the truths may be written.
     for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
         folder.write_reproducible(&files::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
     }
@@ -124,7 +125,7 @@ fn conclude(
     finish(arguments, &folder, &made.manifest, pool, &failed, cancel, start)
 }
 
-/// Hands the shares to a batch system.
+/// Submits the shares to a batch system.
 fn launched(
     arguments: &TrialsArguments,
     plan: &TrialPlan,
@@ -142,7 +143,7 @@ fn launched(
     launch(&arguments.share, &work, arguments.output)
 }
 
-/// Says that a share is done while others still owe answers: the seals stay closed.
+/// Reports that a share is done while others still lack answers; the seals stay closed.
 fn share_done(
     arguments: &TrialsArguments,
     folder: &RunFolder,
@@ -169,7 +170,7 @@ fn share_done(
     Ok(Outcome::Done)
 }
 
-/// The arguments as those of an experiment: configuration, overrides, folder, threads.
+/// Converts the arguments into those of an experiment: configuration, overrides, folder, threads.
 fn as_experiment(arguments: &TrialsArguments) -> ExperimentArguments {
     ExperimentArguments {
         config: arguments.config.clone(),
@@ -180,8 +181,8 @@ fn as_experiment(arguments: &TrialsArguments) -> ExperimentArguments {
     }
 }
 
-/// The folder: a new one, or that of trials begun with the same configuration. Locked, and for shares and those who go on
-/// waited for: it is, while cases are made and answers scored.
+/// Opens the folder: a new one, or that of trials begun with the same configuration. The folder is locked;
+/// shares and resumed trials wait for the lock, which is held while cases are created and answers are scored.
 fn begin(
     arguments: &TrialsArguments,
     plan: &TrialPlan,
@@ -214,7 +215,8 @@ fn begin(
     Ok(folder)
 }
 
-/// That trials were begun with these values: where each was written stands in the comments, and may have changed.
+/// Checks that trials were begun with these values. The comments, which state where each value was set, may
+/// differ.
 fn same(folder: &RunFolder, config: &str) -> Result<(), TrainerError> {
     let file = folder.path().join("config.toml").display().to_string();
     let then = Document::parse(&file, &files::text(folder, "config.toml")?)?;
@@ -225,7 +227,7 @@ fn same(folder: &RunFolder, config: &str) -> Result<(), TrainerError> {
     }
 }
 
-/// How interrupted trials go on.
+/// Returns the advice on continuing interrupted trials.
 fn go_on(folder: &RunFolder) -> String {
     format!("continue with the same command, --out {} and --resume", folder.path().display())
 }
@@ -269,7 +271,7 @@ fn finish(
     shown(arguments, folder, &result)
 }
 
-/// Prints the scores; a gate or a bar that they miss is how the command ends.
+/// Prints the scores. The command ends with a failed check if they miss a gate or, with `--check`, a bar.
 fn shown(
     arguments: &TrialsArguments,
     folder: &RunFolder,

@@ -1,4 +1,5 @@
-//! Opening the seals: truths, answers and records from the folder, each held to the manifest's digest.
+//! Opening of the seals: truths, answers and records from the folder, each checked against the manifest's
+//! digest.
 
 use super::baselines::{DIAGNOSERS, Diagnoser};
 use super::each::each;
@@ -15,7 +16,8 @@ use std::collections::BTreeMap;
 use trials::{AnsweredCase, Baseline, Hidden, true_closure};
 use truth::{Sealed, digest};
 
-/// Why cases have no answer, by case, as the diagnosis said when it was asked; empty where that is not there.
+/// Reads the reasons why cases have no answer, by case, as the diagnosis reported them; empty if there is no
+/// such file.
 pub(crate) fn failed(folder: &RunFolder) -> Result<BTreeMap<String, String>, TrialsError> {
     let path = folder.path().join(FAILED);
     if !path.exists() {
@@ -27,17 +29,17 @@ pub(crate) fn failed(folder: &RunFolder) -> Result<BTreeMap<String, String>, Tri
     })
 }
 
-/// Cases with opened truths, and what simpler diagnosers say of them.
+/// Cases with opened truths, and the answers of simpler diagnosers.
 pub(crate) struct Opened {
     pub(crate) cases: Vec<AnsweredCase>,
     pub(crate) baselines: Vec<Baseline>,
 }
 
-/// What each simpler diagnoser names in a case.
+/// Effect that each simpler diagnoser names in a case.
 type Named = Vec<Option<String>>;
 
-/// Opens every truth and reads every answer; `None` where interrupted. `failed` says why an answer is missing, where
-/// that is known.
+/// Opens every truth and reads every answer; `None` if interrupted. `failed` holds the known reasons why
+/// answers are missing.
 pub(crate) fn open(
     folder: &RunFolder,
     manifest: &TrialsManifest,
@@ -91,7 +93,7 @@ fn one(
             let named = DIAGNOSERS.iter().map(|diagnoser| (diagnoser.names)(&given).map(str::to_owned));
             (closure, named.collect())
         }
-        // What cannot be read has no answer either.
+        // A case whose input cannot be read has no answer either.
         Err(error) => (Err(error.to_string()), Vec::new()),
     };
     let without = line.group.strip_prefix(WITHOUT).map_or_else(String::new, |id| format!(" --without {id}"));
@@ -100,7 +102,7 @@ fn one(
     Ok((AnsweredCase { id: line.id.clone(), hidden, answer, true_closure, command }, named))
 }
 
-/// The answer to a case, or why there is none.
+/// Reads the answer to a case, or the reason why there is none.
 fn answer(
     folder: &RunFolder,
     line: &TrialsManifestLine,

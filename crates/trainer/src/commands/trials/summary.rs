@@ -1,16 +1,16 @@
-//! The terminal's answer: one screen.
+//! Terminal output of trials, on one screen.
 
 use crate::terminal::table::table;
 use report::format::{fixed, interval, quantity, significant};
 use results::{BarRow, Proportion, SizeRow, TrialsResult};
 use std::path::Path;
 
-/// Effects listed among the worst.
+/// Maximum number of effects listed as the worst.
 const MOST_WORST: usize = 6;
-/// Size from which on an effect should be named: smaller ones may be missed honestly.
+/// Size from which an effect should be named; smaller effects may be missed legitimately.
 const VISIBLE: f64 = 12.0;
 
-/// The result as a person wants to read it.
+/// Formats the result for the terminal.
 pub(super) fn summary(result: &TrialsResult, folder: &Path) -> String {
     let path = folder.display();
     let mut parts = vec![
@@ -85,7 +85,8 @@ fn banks(result: &TrialsResult) -> String {
     table(&["bank", "status and set right", "first name right", "its class right"], rows)
 }
 
-/// What is named of what acts, where several effects do: columns are groups of cases.
+/// Formats the shares of acting effects that are named, by class, in cases with several effects; columns are
+/// groups of cases.
 fn classes(result: &TrialsResult) -> String {
     let groups = &result.inclusion;
     let heads: Vec<&str> =
@@ -103,7 +104,7 @@ fn classes(result: &TrialsResult) -> String {
     table(&heads, rows.collect())
 }
 
-/// The effects least often named first where they are large enough to be.
+/// Lists the effects that are least often named at sizes at which they should be, the worst first.
 fn worst(result: &TrialsResult) -> Option<String> {
     let mut by_effect: Vec<(&str, u64, u64)> = Vec::new();
     let single = |row: &&SizeRow| row.bank == "single" && row.size >= VISIBLE;

@@ -1,4 +1,4 @@
-//! Where the files of two runs differ. Times of day and durations count for nothing.
+//! Comparison of the files of two runs. Times of day and durations are ignored.
 
 use crate::error::TrainerError;
 use runs::{RunError, digest};
@@ -8,22 +8,22 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// Files that tell of the machine and the time, or that others are the source of: the configuration is held to its
-/// digest, and the pages are made again from the kept files.
+/// Files that are not compared: they record the machine and the time, or are checked or derived otherwise.
+/// The configuration is checked by its digest, and the pages are rebuilt from the other files.
 const NOT_COMPARED: &[&str] =
     &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
 
-/// What `trainer export` adds to a run's folder, which is no part of the run.
+/// Subfolder that `trainer export` adds to a run's folder, which is not part of the run.
 const EXPORTED: &str = "tensorboard/";
 
-/// The key of every duration in a result.
+/// Key of every duration in a result.
 const DURATION: &str = "seconds";
 
-/// One value that is not the same.
+/// Value that differs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct Difference {
     pub(super) file: String,
-    /// Dotted key, line and column, or what of the file was compared.
+    /// Dotted key, line and column, or the compared property of the file.
     pub(super) place: String,
     pub(super) kept: String,
     pub(super) again: String,
@@ -36,7 +36,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Every difference between the files below two folders.
+/// Returns every difference between the files below two folders.
 pub(super) fn differences(kept: &Path, again: &Path) -> Result<Vec<Difference>, TrainerError> {
     let mut names = files(kept, "")?;
     names.extend(files(again, "")?);
@@ -60,7 +60,7 @@ pub(super) fn differences(kept: &Path, again: &Path) -> Result<Vec<Difference>, 
             ([Some(kept), Some(again)], Some("csv")) => in_tables(kept, again, &mut add),
             _ => {}
         }
-        // What is no text, or differs where its text was not looked at.
+        // The file is not text, or differs in a part that was not compared as text.
         if found.len() == before && bytes.first() != bytes.last() {
             let shown = bytes.map(|bytes| bytes.map_or_else(|| "absent".to_owned(), |bytes| digest(&bytes)));
             let [kept, again] = shown;
@@ -70,7 +70,7 @@ pub(super) fn differences(kept: &Path, again: &Path) -> Result<Vec<Difference>, 
     Ok(found)
 }
 
-/// Names of all files below a folder, from it.
+/// Returns the names of all files below a folder, relative to it.
 fn files(folder: &Path, prefix: &str) -> Result<BTreeSet<String>, TrainerError> {
     let mut names = BTreeSet::new();
     let refused = |source| RunError::Io { path: folder.to_owned(), action: "list", source };
@@ -114,7 +114,7 @@ fn in_values(place: &str, kept: &Value, again: &Value, add: &mut impl FnMut(Stri
     }
 }
 
-/// Cell by cell, the columns named by the kept table's header.
+/// Compares two tables cell by cell; columns are named by the header of the original table.
 fn in_tables(kept: &str, again: &str, add: &mut impl FnMut(String, String, String)) {
     let rows = |text: &str| -> Vec<csv::StringRecord> {
         let reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());

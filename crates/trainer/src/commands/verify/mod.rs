@@ -1,4 +1,4 @@
-//! `trainer verify`: a finished run is made again from its folder alone, and laid beside what was kept.
+//! `trainer verify`: repetition of a finished run from its folder, compared with the original.
 
 mod difference;
 
@@ -16,10 +16,10 @@ use runs::{Disk, RunFolder, Scratch, digest};
 use serde_json::json;
 use std::path::Path;
 
-/// Differences that are printed; all of them are counted, and in the JSON.
+/// Maximum number of differences printed; all of them are counted and included in the JSON output.
 const MOST_PRINTED: usize = 20;
 
-/// Runs again what a folder holds, in a folder that is then thrown away, and says where the two differ.
+/// Repeats the run of a folder in a temporary folder and reports the differences.
 pub(crate) fn command(run: &Path, threads: Option<u16>, output: Output) -> Result<Outcome, TrainerError> {
     if !run.is_dir() {
         return Err(no_run(run));
@@ -51,7 +51,7 @@ pub(crate) fn command(run: &Path, threads: Option<u16>, output: Output) -> Resul
     Ok(if found.is_empty() { Outcome::Done } else { Outcome::CheckFailed })
 }
 
-/// The records as they lie there now; those that cannot be read are left out.
+/// Reads the records as they are now; those that cannot be read are left out.
 fn present(data: &[DataFile]) -> Vec<DataFile> {
     let read = |file: &DataFile| {
         let bytes = std::fs::read(&file.path).ok()?;
@@ -60,8 +60,8 @@ fn present(data: &[DataFile]) -> Vec<DataFile> {
     data.iter().filter_map(read).collect()
 }
 
-/// The tables that are made from the result, made from it again. The report holds the folder's name, which may have
-/// changed since.
+/// Rebuilds the tables that are derived from the result and compares them with the original ones. The report
+/// is not compared: it holds the folder's name, which may have changed since.
 fn derived(folder: &RunFolder) -> Result<Option<Difference>, TrainerError> {
     let name = "tables.md";
     let Some(again) = tables(folder)?.filter(|_| folder.path().join(name).exists()) else { return Ok(None) };

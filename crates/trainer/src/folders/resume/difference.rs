@@ -1,8 +1,8 @@
-//! Where two resolved configurations differ, by key.
+//! Differences between two resolved configurations, by key.
 
 use settings::{Document, SettingsError};
 
-/// A sentence for each key whose value differs: `fit.seeds was 10, now 5`. Comments count for nothing.
+/// Returns a sentence for each key whose value differs: `fit.seeds was 10, now 5`. Comments are ignored.
 pub(super) fn differences(before: &str, now: &str) -> Result<Vec<String>, SettingsError> {
     let (before, now) = (Document::parse("config.toml", before)?, Document::parse("configuration", now)?);
     let shown = |document: &Document, key: &str| {

@@ -1,4 +1,4 @@
-//! What a run would lose if it were killed: finished fits, and the state of those in progress.
+//! Checkpoints of a run: finished fits, and the state of unfinished ones.
 
 use crate::error::ResumeError;
 use crate::error::TrainerError;
@@ -11,21 +11,21 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Beginning and end of the names of the two kinds of checkpoints.
+/// Prefix and suffix of the names of the two kinds of checkpoints.
 const FINISHED: &str = "finished-";
 const STATE: &str = ".state";
 
-/// The checkpoints of a run.
+/// Checkpoints of a run.
 ///
-/// A finished fit is kept at once where it took longer than the interval between checkpoints; shorter ones are
-/// gathered until together they did, so that a thousand fits of a millisecond do not wait for the disk a
-/// thousand times.
+/// A finished fit is stored at once if it took longer than the interval between checkpoints. Shorter fits are
+/// collected until together they took that long, so that a thousand fits of a millisecond do not wait for the
+/// disk a thousand times.
 pub(crate) struct Ledger {
     folder: RunFolder,
-    /// Digest of what the run was begun with: a checkpoint of another run is refused.
+    /// Digest of the inputs with which the run was begun; a checkpoint of another run is refused.
     run: String,
     pub(crate) settings: CheckpointSettings,
-    /// What was finished before this program went on, encoded, by name.
+    /// Values that earlier processes finished, encoded, by name.
     finished: BTreeMap<String, Vec<u8>>,
     pending: Mutex<Pending>,
 }
@@ -38,14 +38,14 @@ struct Pending {
     next: u64,
 }
 
-/// A file of finished fits.
+/// File of finished fits.
 #[derive(Serialize, Deserialize)]
 struct Finished {
     run: String,
     entries: Vec<(String, Vec<u8>)>,
 }
 
-/// A fit in progress, as it is kept.
+/// Stored state of an unfinished fit.
 #[derive(Serialize, Deserialize)]
 struct InProgress {
     run: String,
@@ -53,22 +53,22 @@ struct InProgress {
     resumed: Resumed,
 }
 
-/// What a fit goes on from.
+/// State from which a fit is resumed.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Resumed {
-    /// The estimator's own state.
+    /// State of the estimator.
     pub(crate) state: Vec<u8>,
-    /// Every step before.
+    /// All steps before.
     pub(crate) trace: Vec<TraceRow>,
-    /// Time spent before.
+    /// Time spent before, in seconds.
     pub(crate) seconds: f64,
 }
 
 impl Ledger {
-    /// The ledger of a run that has been begun, with what it holds.
+    /// Opens the ledger of a run that has been begun, with all its checkpoints.
     ///
-    /// Every checkpoint is read here, whether it is going to be needed or not: one that is damaged is refused before
-    /// anything is computed.
+    /// Every checkpoint is read here, whether or not it is needed later, so that a damaged one is refused
+    /// before anything is computed.
     pub(crate) fn open(folder: &RunFolder, settings: CheckpointSettings) -> Result<Self, TrainerError> {
         let begun = serde_json::to_string(&started(folder)?).unwrap_or_default();
         let mut ledger = Self {
@@ -94,13 +94,13 @@ impl Ledger {
         Ok(ledger)
     }
 
-    /// What was finished under a name before this program went on.
+    /// Returns the value that an earlier process finished under a name; `None` if there is none.
     pub(crate) fn finished<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>, TrainerError> {
         let Some(bytes) = self.finished.get(name) else { return Ok(None) };
         Ok(Some(decode(bytes).map_err(|problem| self.damaged(FINISHED, problem))?))
     }
 
-    /// Keeps what took some time to compute.
+    /// Stores a computed value; `seconds` is the time that it took.
     pub(crate) fn keep<T: Serialize>(&self, name: &str, value: &T, seconds: f64) -> Result<(), TrainerError> {
         let bytes = encode(name, value)?;
         let mut pending = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
@@ -109,7 +109,7 @@ impl Ledger {
         if pending.seconds >= self.settings.interval_s { self.write(&mut pending) } else { Ok(()) }
     }
 
-    /// Keeps at once what is still waiting for it.
+    /// Writes all values that are still waiting.
     pub(crate) fn flush(&self) -> Result<(), TrainerError> {
         self.write(&mut self.pending.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -126,7 +126,7 @@ impl Ledger {
         Ok(())
     }
 
-    /// What a fit of a name goes on from, where its state was kept.
+    /// Returns the state from which the fit with a name can be resumed; `None` if no state was stored.
     pub(crate) fn resumed(&self, name: &str) -> Result<Option<Resumed>, TrainerError> {
         let file = state_file(name);
         let Some(kept) = self.read::<InProgress>(&file)? else { return Ok(None) };
@@ -137,7 +137,7 @@ impl Ledger {
         }
     }
 
-    /// Keeps what a fit of a name would go on from.
+    /// Stores the state from which the fit with a name can be resumed.
     pub(crate) fn keep_state(&self, name: &str, resumed: Resumed) -> Result<(), TrainerError> {
         let kept = InProgress { run: self.run.clone(), name: name.to_owned(), resumed };
         Ok(self.folder.write_checkpoint(&state_file(name), &encode(name, &kept)?)?)
@@ -148,7 +148,7 @@ impl Ledger {
         Ok(Some(decode(&bytes).map_err(|problem| self.damaged(file, problem))?))
     }
 
-    /// Whole bytes that mean nothing: written by another build of the program.
+    /// Builds the error for intact bytes that cannot be decoded: another build of the program wrote them.
     fn damaged(&self, file: &str, problem: String) -> TrainerError {
         RunError::Damaged { path: self.folder.checkpoint_path(file), problem }.into()
     }
@@ -159,8 +159,8 @@ impl Ledger {
     }
 }
 
-/// The file of a fit's state: what of the name every system takes, and a digest, since names may differ in
-/// the rest alone.
+/// Returns the file name of a fit's state: the characters of the name that every system accepts, and a
+/// digest, since names may differ in other characters only.
 fn state_file(name: &str) -> String {
     let shown = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let whole = digest(name.as_bytes());

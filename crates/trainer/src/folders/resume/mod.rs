@@ -1,4 +1,4 @@
-//! Beginning a run, or going on with one that was begun: to the bit what it would have been in one go.
+//! Beginning and resuming runs: a resumed run gives the same bits as an uninterrupted one.
 
 mod difference;
 mod ledger;
@@ -16,41 +16,41 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::Path;
 
-/// The events that say how far a run is.
+/// Events that record the progress of a run.
 const START: &str = "start";
 const RESUME: &str = "resume";
 const INTERRUPTED: &str = "interrupted";
 const END: &str = "end";
-/// The event of a run that failed, of which another attempt is made elsewhere.
+/// Event of a failed run; another attempt is made in another folder.
 pub(crate) const FAILED: &str = "failed";
 
-/// A record file of a run.
+/// Record file of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct DataFile {
-    /// As configured.
+    /// Path as configured.
     pub(crate) path: String,
     pub(crate) digest: String,
 }
 
-/// What a run is made of; whoever resumes it has to bring the same.
+/// Inputs that define a run; resuming it requires the same ones.
 pub(crate) struct Beginning<'a> {
     pub(crate) name: &'a str,
     pub(crate) seed: u64,
-    /// The resolved configuration, which becomes `config.toml`.
+    /// Resolved configuration, which becomes `config.toml`.
     pub(crate) config: String,
     pub(crate) data: Vec<DataFile>,
     pub(crate) threads: usize,
 }
 
 impl<'a> Beginning<'a> {
-    /// Of an experiment on one record, with the text that is to be its `config.toml`.
+    /// Collects the inputs of an experiment on one record, with the text of its `config.toml`.
     pub(crate) fn of(experiment: &'a Experiment, digest: &str, config: String, threads: usize) -> Self {
         let data = DataFile { path: experiment.data.path.clone(), digest: digest.to_owned() };
         Self { name: &experiment.name, seed: experiment.seed, config, data: vec![data], threads }
     }
 }
 
-/// The details of the event `start`: what the run is made of, in digests.
+/// Details of the event `start`: the inputs that define the run, as digests.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Start {
     name: String,
@@ -62,13 +62,13 @@ pub(crate) struct Start {
     pub(crate) data: Vec<DataFile>,
 }
 
-/// A run that is open for work, or one that needs none.
+/// Run that is open for work, or finished.
 pub(crate) enum Begun {
     Open(RunFolder),
     Finished(Outcome),
 }
 
-/// The folder of a run that was taken up again.
+/// Folder of a run that was reopened.
 pub(crate) enum TakenUp {
     /// There is work left.
     Open(RunFolder),
@@ -76,7 +76,7 @@ pub(crate) enum TakenUp {
     Finished(RunFolder),
 }
 
-/// Makes the run's folder, or goes on with the one that the arguments name and `--resume` allows.
+/// Creates the run's folder or, with `--resume`, resumes the run in the folder that the arguments name.
 pub(crate) fn begin(
     arguments: &ExperimentArguments,
     beginning: &Beginning<'_>,
@@ -95,8 +95,8 @@ pub(crate) fn begin(
     }
 }
 
-/// Goes on with the run in a folder, or begins it there where it was killed before it had begun. `remark` is given what
-/// the user should know.
+/// Resumes the run in a folder, or begins it there if it was killed before it had begun. `remark` receives
+/// messages for the user.
 pub(crate) fn take_up(
     disk: &Disk,
     path: &Path,
@@ -110,7 +110,7 @@ pub(crate) fn take_up(
         remark(&format!("{shown}/events.jsonl:{line}: a crash cut the last line short; it is left out"));
     }
     let Some(begun) = started(&folder)? else {
-        // Killed before anything was computed, or nothing there yet.
+        // The run was killed before anything was computed, or the folder is empty.
         return match folder.holds_only(&["config.toml", "environment.json", "events.jsonl"])? {
             true => start(folder, beginning).map(TakenUp::Open),
             false => Err(ResumeError::NoRun { folder: shown.to_string() }.into()),
@@ -118,7 +118,7 @@ pub(crate) fn take_up(
     };
     check(&folder, &begun, beginning)?;
     if log.last(END).is_some() {
-        // A kill after the last event may have left some.
+        // If the program was killed after the last event, some checkpoints may be left.
         folder.remove_checkpoints()?;
         return Ok(TakenUp::Finished(folder));
     }
@@ -153,7 +153,7 @@ fn environment_of(beginning: &Beginning<'_>) -> Environment {
     Environment::new(beginning.threads, &digests.join(" "))
 }
 
-/// What a run was begun with; `None` where its log does not say that it was.
+/// Reads the inputs with which a run was begun; `None` if its log has no start event.
 pub(crate) fn started(folder: &RunFolder) -> Result<Option<Start>, TrainerError> {
     let Some(event) = folder.events()?.last(START).cloned() else { return Ok(None) };
     let begun = serde_json::from_value(event.details);
@@ -171,12 +171,12 @@ pub(crate) fn started(folder: &RunFolder) -> Result<Option<Start>, TrainerError>
     })
 }
 
-/// Whether the last word of a run's log is that it is finished.
+/// Returns `true` if a run's log states that it is finished.
 pub(crate) fn is_finished(folder: &RunFolder) -> Result<bool, TrainerError> {
     Ok(folder.events()?.last(END).is_some())
 }
 
-/// The configuration of a run, if it is still what the run was begun with.
+/// Reads the configuration of a run, if it is unchanged since the run was begun.
 pub(crate) fn config_of(folder: &RunFolder, begun: &Start) -> Result<String, TrainerError> {
     let bytes = folder.read("config.toml")?;
     let touched =
@@ -187,7 +187,7 @@ pub(crate) fn config_of(folder: &RunFolder, begun: &Start) -> Result<String, Tra
     Ok(String::from_utf8(bytes).map_err(|_| touched())?)
 }
 
-/// That this program with this configuration began the run.
+/// Checks that this version of the program began the run, with the same configuration.
 fn check(folder: &RunFolder, begun: &Start, beginning: &Beginning<'_>) -> Result<(), TrainerError> {
     let shown = folder.path().display().to_string();
     let version = env!("CARGO_PKG_VERSION");
@@ -201,7 +201,7 @@ fn check(folder: &RunFolder, begun: &Start, beginning: &Beginning<'_>) -> Result
     Err(ResumeError::OtherConfig { folder: shown, differences: differences.join("; ") }.into())
 }
 
-/// That the records are those that the run was begun with.
+/// Checks that the records are those with which the run was begun.
 pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeError> {
     for expected in &begun.data {
         let found = data.iter().find(|found| found.path == expected.path);
@@ -216,7 +216,8 @@ pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeE
     Ok(())
 }
 
-/// A finished run is shown as it is, and ends as it ended: one that failed its check has not passed since.
+/// Shows a finished run unchanged and returns its outcome again: a run that failed its check has not passed
+/// since.
 fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outcome, TrainerError> {
     if arguments.output.json {
         console::result(String::from_utf8_lossy(&folder.read("result.json")?).trim_end());
@@ -228,7 +229,8 @@ fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outco
     Ok(if has_failed { Outcome::CheckFailed } else { Outcome::Done })
 }
 
-/// Writes the last event: that the run is finished, or where to go on. A finished run needs no checkpoints.
+/// Writes the last event: the run is finished, or was interrupted and can be resumed. The checkpoints of a
+/// finished run are removed.
 pub(crate) fn end(
     folder: &RunFolder,
     interrupted: bool,

@@ -1,9 +1,10 @@
-//! Systems that lack several things of very different size: effects of the vocabulary by other laws than its own, beside smooth
-//! laws that it does not have.
+//! Composite cases: systems that lack several effects of very different size, together with smooth laws
+//! outside the vocabulary. The effects act by laws that differ from the vocabulary's.
 //!
-//! Swings a record and samples a swing are drawn over decades, as many as the configured number of samples permits.
-//! A size is stated as a multiple of the noise: root mean square over all samples of what no recalibration
-//! absorbs of the effect alone, over the standard deviation of all that is white.
+//! The numbers of swings per record and of samples per swing are drawn over decades, as far as the configured
+//! number of samples permits. A size is stated as a multiple of the noise: the root mean square, over all
+//! samples, of the part of the effect alone that no recalibration absorbs, divided by the standard deviation
+//! of all white disturbances.
 
 use super::own_record::{Told, written};
 use crate::effects::by_other_laws;
@@ -25,32 +26,33 @@ use seed::Seed;
 use std::f64::consts::PI;
 use truth::Sampling;
 
-/// Sizes × noise: of the leading effect, of the others, of some small ones, of what has no name.
+/// Sizes × noise: of the leading effect, of the others, of small ones among them, and of laws outside the
+/// vocabulary.
 const LEADING: [f64; 2] = [30.0, 150.0];
 const OTHERS: [f64; 2] = [4.0, 30.0];
 const SMALL: [f64; 2] = [1.0, 4.0];
 const NAMELESS: [f64; 2] = [0.3, 3.0];
 
-/// How many of the others are small.
+/// Share of small effects among the others.
 const SMALL_SHARE: f64 = 0.3;
 
-/// Size of the leading effect as a part of the swing: from, to. The noise follows from it.
+/// Size of the leading effect as a share of the swing: from, to. It determines the noise.
 const LEADING_PART: [f64; 2] = [0.01, 0.06];
 
-/// Swings a record and samples a swing: from, to.
+/// Numbers of swings per record and of samples per swing: from, to.
 const SWINGS: [f64; 2] = [8.0, 300.0];
 const SAMPLES: [f64; 2] = [12.0, 200.0];
 
-/// Fewest samples of a record, where the configured number permits.
+/// Smallest number of samples of a record, if the configured number permits.
 const FEWEST: usize = 800;
 
-/// Logarithms by which the amplitude falls over a free decay, at most: beyond there is nothing to see.
+/// Largest decrease of ln A over a free decay; a longer decay would show nothing more.
 const LARGEST_DECAY: f64 = 6.0;
 
-/// Largest distance from the rest angle in units of the amplitude drawn.
+/// Largest distance from the rest angle, in units of the drawn amplitude.
 const LARGEST_SWING: f64 = 2.0;
 
-/// A case of the bank.
+/// Makes a case of the bank.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let (seed, branch) = job.seed(plan.seed);
     for attempt in 0..ATTEMPTS {
@@ -78,7 +80,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
     Err(TrialError::OutOfReach { effect: "composite".to_owned(), wanted: LEADING[0], attempts: ATTEMPTS })
 }
 
-/// Sizes × noise: of effects, the leading one first, and of laws outside the vocabulary.
+/// Sizes × noise: of the effects, the leading one first, and of the laws outside the vocabulary.
 struct Sizes {
     effects: Vec<f64>,
     unlisted: Vec<f64>,
@@ -96,7 +98,7 @@ impl Sizes {
     }
 }
 
-/// A system, its motion and its sensor, over wider ranges than the other banks'.
+/// Draws a system, its motion and its sensor over wider ranges than in other banks.
 fn situation(
     plan: &TrialPlan,
     own: &Seed,
@@ -132,7 +134,7 @@ fn situation(
     Situation::draw(&ranges, sampling, own, kind)
 }
 
-/// The laws of a case and what they are called.
+/// Laws of a case, and their descriptions in its truth.
 #[derive(Default)]
 struct Parts {
     laws: Vec<Box<dyn TorqueLaw>>,
@@ -141,8 +143,8 @@ struct Parts {
 }
 
 impl Parts {
-    /// Effects of the sizes wanted, taken from the vocabulary in a drawn order; those that cannot be so large are passed
-    /// over. `None` where fewer than two are found.
+    /// Finds effects with the wanted sizes, in a random order of the vocabulary. Effects that cannot be so
+    /// large are skipped. `None` if fewer than two effects or no law outside the vocabulary are found.
     fn draw(setup: &Setup, own: &Seed, sizes: &Sizes, draws: &mut Draws) -> Result<Option<Self>, TrialError> {
         let situation = &setup.situation;
         let count = (situation.sampling.samples * situation.starts.len()) as f64;
@@ -183,7 +185,8 @@ impl Parts {
     }
 }
 
-/// A law of the size wanted; `None` where no size is, or the motion runs away on the way there.
+/// Returns a law of the wanted size; `None` if no size is large enough or the motion diverges during the
+/// search.
 fn within_reach(open: &OpenLaw, setup: &Setup, detectability: f64) -> Result<Option<SizedLaw>, TrialError> {
     match setup.sized(open, detectability, Absorbed::BY_RECALIBRATION) {
         Err(TrialError::Dynamics(DynamicsError::Diverged { .. })) => Ok(None),
@@ -191,7 +194,7 @@ fn within_reach(open: &OpenLaw, setup: &Setup, detectability: f64) -> Result<Opt
     }
 }
 
-/// A drawn order.
+/// Shuffles a list.
 fn shuffled<T>(mut items: Vec<T>, draws: &mut Draws) -> Vec<T> {
     for last in (1..items.len()).rev() {
         items.swap(last, draws.below(last + 1));
@@ -199,7 +202,7 @@ fn shuffled<T>(mut items: Vec<T>, draws: &mut Draws) -> Vec<T> {
     items
 }
 
-/// Returns whether a motion is one about the rest angle.
+/// Returns `true` if a motion stays near the rest angle.
 fn is_sensible(situation: &Situation, motion: &Motion) -> bool {
     let rest = situation.nominal.rest_angle();
     let near = |position: &f64| (position - rest).abs() <= LARGEST_SWING * situation.amplitude;

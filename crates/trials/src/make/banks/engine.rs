@@ -1,4 +1,4 @@
-//! Records of a physics engine.
+//! Cases from records of a physics engine.
 
 use crate::make::case::Case;
 use crate::make::error::TrialError;
@@ -8,7 +8,7 @@ use crate::{Bank, HIDDEN_SCHEMA, Hidden};
 use record::{ReadOptions, read_file};
 use simulator::{csv_text, nominal_text};
 
-/// A case of the bank, its files written anew so that their notation tells nothing.
+/// Makes a case of the bank. Its files are rewritten, so that their number format reveals nothing.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let Some(case) = plan.engine.get(job.number) else {
         return Err(TrialError::NoSuchCase { index: job.number, cases: plan.engine.len() });

@@ -1,7 +1,7 @@
-//! Effects that the vocabulary does not have.
+//! Cases of laws outside the vocabulary.
 //!
-//! Their sizes are those of what is left when not only a recalibration but also the effects nearest to them
-//! have taken away what they can: else `unknown` would be no better an answer than the stand-in.
+//! Their sizes count only what remains after a recalibration and the nearest effects of the vocabulary have
+//! absorbed what they can; otherwise `unknown` would be no better an answer than the surrogate effect.
 
 use super::own_record::{Told, written};
 use crate::Foreign;
@@ -14,7 +14,7 @@ use crate::make::plan::TrialPlan;
 use crate::make::setup::{ATTEMPTS, Setup};
 use crate::make::unlisted;
 
-/// A case of the bank.
+/// Makes a case of the bank.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let ((law, absorbed), wanted) = plan.turn(job.number, &unlisted::alone())?;
     let kind_of_motion = job.free_motions(plan.seed);

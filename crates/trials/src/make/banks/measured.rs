@@ -1,4 +1,4 @@
-//! Effects in simulated records, under what a diagnosis left over of measured ones.
+//! Effects in simulated records, combined with residuals that a diagnosis left of measured ones.
 
 use crate::effects::hidden_in;
 use crate::make::case::Case;
@@ -17,15 +17,15 @@ use simulator::{csv_text, nominal_text};
 use std::path::Path;
 use truth::{Draws as Branch, Sampling, TRUTH_SCHEMA, Truth};
 
-/// A residual with its times.
+/// Residual of a measured record, with its times.
 struct Residual {
     stamps: Vec<f64>,
     first_stamp: f64,
     values: Vec<f64>,
     rate_hz: f64,
-    /// Standard deviation of its white part.
+    /// Standard deviation of the white part.
     white: f64,
-    /// Whether samples share stamps.
+    /// `true` if samples share timestamps.
     bursts: bool,
 }
 
@@ -50,7 +50,7 @@ impl Residual {
         let off =
             stamps.iter().enumerate().map(|(index, stamp)| (stamp - first - index as f64 * period).abs());
         let off = off.fold(0.0, f64::max);
-        // Bursts of a host come up to a tenth of a second apart.
+        // Bursts of a host arrive up to a tenth of a second apart.
         if off > 0.1_f64.max(3.0 * period) {
             let problem = format!("stamps are up to {off:.3} s off a uniform rate: samples are missing");
             return Err(refused(problem, "write a stretch without gaps"));
@@ -67,10 +67,11 @@ impl Residual {
     }
 }
 
-/// An effect's simulated record with a measured record's residual on top.
+/// Makes a case of the bank: an effect's simulated record plus a measured record's residual.
 ///
-/// Noise, rounding and stamps are the residual's: nothing is drawn of them. Its size is in units of the
-/// residual's white part, from second differences. The samples are taken at a uniform rate, by their index.
+/// Noise, rounding and timestamps are those of the residual; none of them is drawn. The effect's size is in
+/// units of the residual's white part, estimated from second differences. Samples are taken at a uniform
+/// rate, by their index.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let (effect, wanted) = plan.turn(job.number, &hidden_in(Bank::Measured))?;
     let path = plan.residuals.get(job.number % plan.residuals.len().max(1));
@@ -109,7 +110,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
     Err(TrialError::OutOfReach { effect: effect.id().to_owned(), wanted, attempts: ATTEMPTS })
 }
 
-/// Records of an effect with a residual on top, as texts, and their truths.
+/// Returns the records of an effect with a residual added, as texts, and their truths.
 fn under(
     residual: &Residual,
     setup: &Setup,

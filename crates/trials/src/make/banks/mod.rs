@@ -1,4 +1,4 @@
-//! One file for each way in which a bank's cases come about.
+//! Generators of cases, one file for each way of making them.
 
 mod composite;
 mod engine;
@@ -18,7 +18,7 @@ use super::job::Job;
 use super::plan::TrialPlan;
 use crate::Bank;
 
-/// Draws a case of a job's bank, with the name of its folder.
+/// Makes a case of a job's bank; `id` is the name of its folder.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     match job.bank {
         Bank::None
@@ -38,14 +38,14 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
 }
 
 impl TrialPlan {
-    /// The case with a number from 0. It depends on the seed and on its bank and number there alone, and on
-    /// no other case.
+    /// Makes the case with a number from 0. The case depends only on the seed, its bank and its number in
+    /// that bank, and on no other case.
     ///
     /// # Errors
-    /// [`TrialError`]: a number beyond [`TrialPlan::len`]; systems, lengths and detectabilities that do not
-    /// go together; files from outside that cannot be read.
+    /// [`TrialError`] for a number that is not below [`TrialPlan::len`], for systems, lengths and
+    /// detectabilities that contradict each other, and for external files that cannot be read.
     pub fn case(&self, index: usize) -> Result<Case, TrialError> {
-        // Numbers are dealt to banks by a shuffle: a folder's name betrays nothing.
+        // A shuffle assigns numbers to banks, so a folder's name reveals nothing.
         make(self, self.job(index)?, format!("{index:06}"))
     }
 }

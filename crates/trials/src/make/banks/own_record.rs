@@ -1,4 +1,4 @@
-//! Cases whose motion comes from laws outside the vocabulary and from the integrator beside.
+//! Cases whose motion comes from laws outside the vocabulary and from this crate's own integrator.
 
 use crate::make::case::Case;
 use crate::make::error::TrialError;
@@ -12,7 +12,7 @@ use dynamics::chain::{Chain, Observed};
 use record::{Quantity, Record};
 use simulator::csv_text;
 
-/// What a case of such a motion says it hides.
+/// Parts of the hidden truth of such a case.
 #[derive(Default)]
 pub(crate) struct Told {
     pub(crate) effects: Vec<HiddenEffect>,
@@ -21,7 +21,7 @@ pub(crate) struct Told {
     pub(crate) made: String,
 }
 
-/// Sends motions through the measurement chain and puts the case together.
+/// Passes motions through the measurement chain and assembles the case.
 pub(crate) fn written(
     plan: &TrialPlan,
     job: Job,

@@ -1,4 +1,5 @@
-//! Rigs of a folder that experiments/rigs/records.py wrote: cases below `cases`, their truths apart below `truths`.
+//! Rigs from a folder that experiments/rigs/records.py wrote: cases below `cases`, their truths separately
+//! below `truths`.
 
 use crate::make::case::Case;
 use crate::make::error::TrialError;
@@ -12,11 +13,11 @@ use simulator::nominal_text;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// The `schema` of a rig's truth.
+/// Value of the `schema` field in a rig's truth.
 const SCHEMA: &str = "ringdown.rig/1";
 
-/// A class may be named for a law outside the vocabulary that acts alone if the best of the class leaves no more of it: × noise,
-/// or as a part of its size.
+/// Limits on what the best effect of a class leaves of a law outside the vocabulary that acts alone, × noise
+/// and as a share of the law's size. An answer may name the class if it leaves no more than the larger limit.
 const LEFT_FLOORS: f64 = 0.5;
 const LEFT_PART: f64 = 0.15;
 
@@ -54,7 +55,8 @@ struct RigSampling {
     samples: usize,
 }
 
-/// A rig as a case. Its records keep their text: how many decimals they have follows from noise and rate.
+/// Makes a case from a rig. The texts of its records are kept, because their number of decimals follows from
+/// noise and rate.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let Some(case) = plan.rigs.get(job.number) else {
         return Err(TrialError::NoSuchCase { index: job.number, cases: plan.rigs.len() });
@@ -72,7 +74,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
     Ok(Case { id, without: None, records, nominal: nominal_text(&nominal), hidden })
 }
 
-/// The truth as trials hide it.
+/// Converts a rig's truth to the hidden truth of a case.
 pub(crate) fn hidden(truth: RigTruth) -> Result<Hidden, String> {
     if truth.schema != SCHEMA {
         return Err(format!("its schema is {}, not {SCHEMA}", truth.schema));
@@ -94,7 +96,7 @@ pub(crate) fn hidden(truth: RigTruth) -> Result<Hidden, String> {
             let alike = truth.resembles.iter().filter(|(_, left)| **left <= size).map(|(id, _)| id.clone());
             let allowed = law.class.iter().cloned().chain(alike).collect();
             let foreign = Foreign { law: law.law.clone(), detectability: law.floors * root };
-            // A small one is no reason to say `unknown`.
+            // A small law is no reason to answer `unknown`.
             match truth.kind.as_str() {
                 "unlisted" => (Some(foreign), allowed, Vec::new()),
                 _ => (None, allowed, truth.unlisted),

@@ -1,4 +1,5 @@
-//! Effects of the vocabulary by other laws, in motions by another integrator, with correlated disturbances.
+//! Stressed cases: effects of the vocabulary by other laws, in motions of another integrator, with correlated
+//! disturbances.
 
 use super::own_record::{Told, written};
 use crate::effects::by_other_laws;
@@ -15,14 +16,14 @@ use crate::{Bank, HiddenEffect};
 use dynamics::Start;
 use seed::Seed;
 
-/// Root mean square of what the disturbing torque does to the position, in units of the sensor's white
-/// noise: from, to.
+/// Root mean square displacement caused by the disturbing torque, in units of the sensor's white noise: from,
+/// to.
 const DISTURBANCE: [f64; 2] = [0.02, 0.08];
 
 /// Standard deviation of the correlated part of the sensor's noise, in the same units.
 const CORRELATED: [f64; 2] = [0.03, 0.15];
 
-/// A case of the bank.
+/// Makes a case of the bank.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let mut hidden = by_other_laws();
     hidden.retain(|(effect, _)| effect.is_hidden_in(Bank::Stressed));
@@ -52,7 +53,8 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
     Err(TrialError::OutOfReach { effect: effect.id().to_owned(), wanted, attempts: ATTEMPTS })
 }
 
-/// A first-order autoregressive sequence of unit variance at the samples, with a correlation time in seconds.
+/// Draws a first-order autoregressive sequence of unit variance at the samples, with a correlation time in
+/// seconds.
 fn autoregressive(situation: &Situation, correlation: f64, draws: &mut Draws) -> Vec<f64> {
     let keep = (-1.0 / (situation.sampling.rate_hz * correlation)).exp();
     let new = (1.0 - keep * keep).sqrt();
@@ -66,7 +68,8 @@ fn autoregressive(situation: &Situation, correlation: f64, draws: &mut Draws) ->
         .collect()
 }
 
-/// A disturbing torque for each record, scaled by what it does to the oscillator at rest.
+/// Draws a disturbing torque for each record, scaled by the displacement that it causes in the oscillator at
+/// rest.
 fn disturbance(
     situation: &Situation,
     seed: &Seed,
@@ -87,7 +90,7 @@ fn disturbance(
         excitation: None,
         ..situation.clone()
     };
-    // There is one for each start, and no other record is asked for.
+    // There is one torque for each start, and no other record is requested.
     let held = |record: usize| unit.get(record).cloned().unwrap_or_default();
     let shaken = motions(&still, &[], &held)?;
     let squares: Vec<f64> =

@@ -1,4 +1,4 @@
-//! Effects by the vocabulary's laws, alone or in pairs, and cases in which nothing is missing.
+//! Cases of effects by the vocabulary's laws, alone or in pairs, and cases in which nothing is missing.
 
 use crate::effects::{TrialEffect, hidden_in};
 use crate::make::case::Case;
@@ -14,7 +14,7 @@ use dynamics::{Active, Effect, System};
 use simulator::{csv_text, generate};
 use truth::{Draws as Branch, TRUTH_SCHEMA, Truth};
 
-/// What a case is to hide.
+/// Effects that a case hides, and their wanted size.
 struct Subject {
     effects: Vec<&'static TrialEffect>,
     wanted: f64,
@@ -23,7 +23,7 @@ struct Subject {
 }
 
 impl Subject {
-    /// What a job's bank hides in its turn.
+    /// Returns what a job's bank hides in its turn.
     fn of(plan: &TrialPlan, job: Job) -> Result<Self, TrialError> {
         let free = job.free_motions(plan.seed);
         let nothing =
@@ -56,7 +56,7 @@ impl Subject {
     }
 }
 
-/// A case whose records follow from truths in the vocabulary.
+/// Makes a case whose records follow from truths in the vocabulary.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let subject = Subject::of(plan, job)?;
     for attempt in 0..ATTEMPTS {
@@ -73,7 +73,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
     Err(TrialError::OutOfReach { effect: ids.join(" and "), wanted: subject.wanted, attempts: ATTEMPTS })
 }
 
-/// Effects in the system, and those in the measurement chain.
+/// Separates effects in the system from those in the measurement chain.
 fn by_place(effects: impl IntoIterator<Item = Active>) -> (Vec<Active>, Vec<Active>) {
     effects.into_iter().partition(|active| matches!(active.effect(), Effect::System(_)))
 }
@@ -123,15 +123,16 @@ fn written(
     Ok(Case { id, without, records, nominal: setup.nominal_toml(nominal)?, hidden })
 }
 
-/// Factor beyond which two effects are one for all that a record says.
+/// Factor above which a record can hardly tell two effects apart.
 const HARDLY_APART: f64 = 5.0;
 
-/// Effects of which each is as detectable as wanted beyond what recalibration *and the other one* make up for.
+/// Sizes the effects so that each one alone is as detectable as wanted beyond what recalibration *and the
+/// other effect* absorb. `None` if this is out of reach.
 ///
-/// Two that are so detectable alone may cancel: dry friction flattens the end of a decay and drag its
-/// beginning. With sizes d₁ and d₂ alone and d₁₂ together their correlation is ρ = (d₁₂² − d₁² −
-/// d₂²)/(2·d₁·d₂), and of each d·√(1 − ρ²) is its own: both are hidden anew at so many times the size. `None`
-/// where that is out of reach.
+/// Two effects that are detectable alone may cancel each other: dry friction flattens the end of a decay,
+/// drag its beginning. Let d₁ and d₂ be the sizes alone and d₁₂ the size together. Their correlation is ρ =
+/// (d₁₂² − d₁² − d₂²)/(2·d₁·d₂), and the part of each that the other cannot absorb is d·√(1 − ρ²). Both
+/// effects are hidden again with the wanted size divided by √(1 − ρ²).
 fn apart(
     setup: &Setup,
     subject: &Subject,
@@ -145,7 +146,8 @@ fn apart(
         setup.detectability_seen(&setup.situation.motions(&acting)?, sensing, absorbed)
     };
     let both = size(&[one, other])?;
-    // Beside a preload nothing shifts the rest angle: the other's own size is another one then.
+    // Beside a preload, recalibration must not move the rest angle, which changes the other effect's size
+    // alone.
     let [first, second] =
         if absorbed.rest_angle { [first, second] } else { [size(&[one])?, size(&[other])?] };
     let correlation = (both * both - first * first - second * second) / (2.0 * first * second);

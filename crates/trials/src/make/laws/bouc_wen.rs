@@ -1,9 +1,9 @@
-//! Hysteresis by Bouc and Wen, with a knee of any sharpness.
+//! Bouc–Wen hysteresis, with a knee of any sharpness.
 
 use crate::make::integrator::{Hidden, Moment, TorqueLaw};
 
-/// −τ_h·z with ż = θ̇/δ·(1 − |z|ⁿ·(½ + ½·sign(θ̇·z))): unloading is elastic, loading bends over at |z| = 1;
-/// the larger n, the sharper.
+/// −τ_h·z with ż = θ̇/δ·(1 − |z|ⁿ·(½ + ½·sign(θ̇·z))): unloading is elastic, loading saturates at |z| = 1;
+/// the larger n, the sharper the knee.
 ///
 /// # Reference
 /// Wen, Journal of the Engineering Mechanics Division 102 (1976) 249.
@@ -29,7 +29,7 @@ impl TorqueLaw for BoucWen {
         let factor = z.abs().powf(self.sharpness - 1.0).max(1e-6);
         let direction = way.signum();
         let end = direction / factor;
-        // Overshoot of the held factor ends where loading does.
+        // The held factor may overshoot; the state is clipped at the saturation of loading.
         let next = end + (z - end) * (-factor * way.abs()).exp();
         [next.clamp(-1.0_f64.max(z.abs()), 1.0_f64.max(z.abs())), 0.0]
     }

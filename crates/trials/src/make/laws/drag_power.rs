@@ -2,12 +2,12 @@
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// −β·v²·(|θ̇|/v)ᵖ·sign(θ̇): at the velocity v as large as the quadratic drag β·θ̇², with the exponent p.
+/// −β·v²·(|θ̇|/v)ᵖ·sign(θ̇): drag with exponent p that equals the quadratic drag β·θ̇² at the velocity v.
 pub(crate) struct DragPower {
-    /// As the quadratic drag's.
+    /// β, as in the quadratic drag.
     pub(crate) coefficient: f64,
     pub(crate) exponent: f64,
-    /// Velocity at which the drag is that of exponent 2.
+    /// v, in rad/s: velocity at which the drag equals that of exponent 2.
     pub(crate) velocity: f64,
 }
 

@@ -2,21 +2,21 @@
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// What drifts.
+/// Coefficient that drifts.
 #[derive(Clone, Copy)]
 pub(crate) enum Drifting {
-    /// The spring, of this stiffness.
+    /// Spring, with this stiffness.
     Stiffness(f64),
-    /// The damper, of this damping.
+    /// Damper, with this damping.
     Damping(f64),
 }
 
-/// −k·x·a·(1 − e^(−t/T))·T or the same with c·θ̇: a warming up that comes to its end, with the initial rate a.
+/// −k·x·a·(1 − e^(−t/T))·T, or the same with c·θ̇: a warm-up that comes to an end, with the initial rate a.
 pub(crate) struct ExponentialDrift {
     pub(crate) of: Drifting,
-    /// Relative change per second at the start.
+    /// a: relative change per second at the start.
     pub(crate) rate: f64,
-    /// Time constant in seconds.
+    /// T: time constant in seconds.
     pub(crate) settling: f64,
 }
 

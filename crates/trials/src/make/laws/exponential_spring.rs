@@ -1,12 +1,12 @@
-//! A spring that is stiffer on one side.
+//! Exponential spring: a spring that is stiffer on one side.
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// −2·k₂·(e^(s·x) − 1 − s·x)/s²: its leading term is −k₂·x², and it has every power beyond.
+/// −2·k₂·(e^(s·x) − 1 − s·x)/s²: the leading term is −k₂·x², and all higher powers follow.
 pub(crate) struct ExponentialSpring {
-    /// As the asymmetric stiffness's.
+    /// k₂, as in the asymmetric stiffness.
     pub(crate) coefficient: f64,
-    /// Reciprocal of the deflection at which the further powers matter, in 1/rad.
+    /// s, in 1/rad: reciprocal of the deflection at which higher powers matter.
     pub(crate) steepness: f64,
 }
 

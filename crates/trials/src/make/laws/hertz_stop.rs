@@ -1,17 +1,17 @@
-//! An end stop with a curved contact.
+//! End stop with a curved contact (Hertz).
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// −k·p^1.5·max(0, 1 + χ·ṗ) away from the stop, p the depth beyond it.
+/// −k·p^1.5·max(0, 1 + χ·ṗ), directed away from the stop, where p is the depth of penetration.
 ///
 /// # Reference
 /// Hunt, Crossley, Journal of Applied Mechanics 42 (1975) 440, with Hertz's power of 3/2.
 pub(crate) struct HertzStop {
-    /// Distance of the stop from the rest angle; its sign is the side.
+    /// Distance of the stop from the rest angle, in rad; the sign gives the side.
     pub(crate) deflection: f64,
-    /// In torque per rad^1.5.
+    /// k, in torque per rad^1.5.
     pub(crate) stiffness: f64,
-    /// χ in s/rad.
+    /// χ, in s/rad.
     pub(crate) dissipation: f64,
 }
 

@@ -1,9 +1,9 @@
-//! Dry friction as bristles that bend.
+//! LuGre friction: dry friction by bending bristles.
 
 use crate::make::integrator::{Hidden, Moment, TorqueLaw};
 
-/// −σ₀·z with ż = θ̇ − σ₀·|θ̇|/g(θ̇)·z and g = τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²); σ₀ = τ_c over the
-/// bristles' bend. Where that bend goes to zero it is Coulomb's or Stribeck's friction.
+/// −σ₀·z with ż = θ̇ − σ₀·|θ̇|/g(θ̇)·z and g = τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²); σ₀ is τ_c divided by the
+/// bend of the bristles. In the limit of zero bend it is Coulomb or Stribeck friction.
 ///
 /// # Reference
 /// Canudas de Wit, Olsson, Åström, Lischinsky, IEEE Transactions on Automatic Control 40 (1995) 419, without
@@ -11,7 +11,7 @@ use crate::make::integrator::{Hidden, Moment, TorqueLaw};
 pub(crate) struct LuGre {
     pub(crate) torque: f64,
     pub(crate) static_torque: f64,
-    /// Stribeck's velocity in rad/s.
+    /// v_s: Stribeck velocity in rad/s.
     pub(crate) velocity: f64,
     /// Bend of the bristles when they slip, in rad.
     pub(crate) bend: f64,
@@ -24,7 +24,7 @@ impl TorqueLaw for LuGre {
         -self.torque * z
     }
 
-    /// Linear in z with the velocity held.
+    /// With the velocity held, the rate is linear in z.
     fn relax(&self, moment: &Moment, duration: f64) -> Hidden {
         let [z, _] = moment.hidden;
         let speed = moment.velocity.abs();

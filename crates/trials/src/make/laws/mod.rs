@@ -1,4 +1,4 @@
-//! Laws by which effects of the vocabulary act in place of its own: one law, one file.
+//! Alternative laws of effects of the vocabulary, one file each.
 
 mod bouc_wen;
 mod drag_power;

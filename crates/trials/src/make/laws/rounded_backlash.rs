@@ -1,11 +1,12 @@
-//! Play with round edges.
+//! Backlash with rounded edges.
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// +k·b·x/√(b² + x²), which the spring loses: a dead zone of ±b whose edges are round over b.
+/// +k·b·x/√(b² + x²), the torque that the spring loses: a dead zone of ±b with edges rounded over a width of
+/// b.
 pub(crate) struct RoundedBacklash {
     pub(crate) stiffness: f64,
-    /// b in rad.
+    /// b: half-width of the dead zone, in rad.
     pub(crate) half_width: f64,
 }
 

@@ -1,8 +1,9 @@
-//! A second body on a spring.
+//! Second body on a spring.
 
 use crate::make::integrator::{Hidden, Moment, TorqueLaw};
 
-/// I₂·(ω²·(ψ − x) + 2·ζ·ω·(ψ̇ − ẋ)) with ψ̈ equal to minus that over I₂. It starts at rest beside the first body.
+/// I₂·(ω²·(ψ − x) + 2·ζ·ω·(ψ̇ − ẋ)), where ψ̈ is minus this torque over I₂. The second body starts at rest
+/// relative to the first.
 ///
 /// # Reference
 /// Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, section 3.1.
@@ -23,7 +24,8 @@ impl TorqueLaw for SecondBody {
         self.inertia * (spring + damper)
     }
 
-    /// A damped oscillation about where the damper's pull by the held velocity balances the spring, exactly.
+    /// The exact damped oscillation about the point at which spring and damper balance, for the held
+    /// velocity.
     fn relax(&self, moment: &Moment, duration: f64) -> Hidden {
         let [position, velocity] = moment.hidden;
         let center = moment.deflection + 2.0 * self.damping_ratio * moment.velocity / self.frequency;

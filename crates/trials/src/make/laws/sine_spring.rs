@@ -1,13 +1,13 @@
-//! A spring whose torque is a sine.
+//! Sine spring: a spring whose torque is a sine.
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// 6·k₃·(sin(s·x) − s·x)/s³: its leading term is −k₃·x³, and it has every odd power beyond. With an
-/// imaginary s, for a spring that stiffens more than its cube, the sine is hyperbolic.
+/// 6·k₃·(sin(s·x) − s·x)/s³: the leading term is −k₃·x³, and all higher odd powers follow. For a spring that
+/// hardens more than its cubic term, s is imaginary and the sine is hyperbolic.
 pub(crate) struct SineSpring {
-    /// As the cubic stiffness's.
+    /// k₃, as in the cubic stiffness.
     pub(crate) coefficient: f64,
-    /// Reciprocal of the deflection at which the further powers matter, in 1/rad.
+    /// s, in 1/rad: reciprocal of the deflection at which higher powers matter.
     pub(crate) steepness: f64,
     pub(crate) hyperbolic: bool,
 }

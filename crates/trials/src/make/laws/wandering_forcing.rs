@@ -1,8 +1,8 @@
-//! A forcing whose phase wanders.
+//! Forcing whose phase wanders.
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// τ_f·sin(Ω·t + φ + m·sin(ω_m·t)): an unbalanced fan whose speed hunts.
+/// τ_f·sin(Ω·t + φ + m·sin(ω_m·t)): an unbalanced fan whose speed oscillates.
 pub(crate) struct WanderingForcing {
     pub(crate) torque: f64,
     /// Ω in rad/s.

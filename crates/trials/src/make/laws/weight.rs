@@ -1,8 +1,8 @@
-//! The weight of an arm.
+//! Gravity: the weight of an arm.
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// −m·g·l·sin(x + φ), φ being the arm's angle from hanging straight down at the rest angle.
+/// −m·g·l·sin(x + φ), where φ is the arm's angle from hanging straight down, at the rest angle.
 pub(crate) struct Weight {
     /// m·g·l.
     pub(crate) torque: f64,

@@ -26,7 +26,7 @@ fn draw(situation: &Situation, draws: &mut Draws) -> (OpenLaw, String) {
     (OpenLaw::new(1e-3, 0.5, law), format!("{teeth} a turn"))
 }
 
-/// −τ·sin(n·θ + φ): a motor's magnets pull toward its teeth, n times a turn.
+/// −τ·sin(n·θ + φ): the attraction between a motor's magnets and its teeth, repeated n times per turn.
 pub(crate) struct Cogging {
     pub(crate) torque: f64,
     pub(crate) teeth: f64,

@@ -1,4 +1,4 @@
-//! A smooth torque of no known kind.
+//! Smooth torque of no known kind.
 
 use super::law::UnlistedLaw;
 use crate::make::draws::Draws;
@@ -20,13 +20,13 @@ fn draw(situation: &Situation, draws: &mut Draws) -> (OpenLaw, String) {
 
 /// τ·Σ aᵢ·sin(kᵢ·x/A + lᵢ·ẋ/V + φᵢ): a random Fourier series in position and velocity.
 pub(crate) struct Field {
-    /// τ.
+    /// τ: scale of the torque.
     pub(crate) torque: f64,
     /// A, in rad.
     pub(crate) swing: f64,
     /// V, in rad/s.
     pub(crate) speed: f64,
-    /// aᵢ, kᵢ, lᵢ and φᵢ.
+    /// aᵢ, kᵢ, lᵢ and φᵢ of each term.
     pub(crate) terms: Vec<[f64; 4]>,
 }
 

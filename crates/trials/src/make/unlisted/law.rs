@@ -1,4 +1,4 @@
-//! What trials know of a law outside the vocabulary.
+//! Properties of laws outside the vocabulary that trials use.
 
 use crate::effects::EffectClass;
 use crate::make::draws::Draws;
@@ -6,15 +6,16 @@ use crate::make::open_law::OpenLaw;
 use crate::make::recalibration::Absorbed;
 use crate::make::situation::Situation;
 
-/// A law outside the vocabulary.
+/// Law outside the vocabulary.
 #[derive(Clone, Copy)]
 pub(crate) struct UnlistedLaw {
-    /// Its name in hidden truths.
+    /// Name used in hidden truths.
     pub(crate) name: &'static str,
-    /// The class of effects that it belongs to by its mechanism, if to one.
+    /// Class of effects to which the law belongs by its mechanism; `None` if to none.
     pub(crate) class: Option<EffectClass>,
-    /// What the vocabulary nearest to it absorbs beside a recalibration, where a case hides it alone; `None` where none does.
+    /// Quantities that the nearest effects of the vocabulary absorb, besides a recalibration, if a case hides
+    /// the law alone; `None` if no case does.
     pub(crate) alone: Option<Absorbed>,
-    /// Draws its shape for a system, and says it in words.
+    /// Draws the law's shape for a system, with a description.
     pub(crate) draw: fn(&Situation, &mut Draws) -> (OpenLaw, String),
 }

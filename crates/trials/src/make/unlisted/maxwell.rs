@@ -1,4 +1,4 @@
-//! A relaxing spring.
+//! Maxwell element: a spring that relaxes.
 
 use super::law::UnlistedLaw;
 use crate::make::draws::Draws;
@@ -26,7 +26,8 @@ fn draw(situation: &Situation, draws: &mut Draws) -> (OpenLaw, String) {
     (OpenLaw::new(1e-3, 1.0, law), format!("relaxes in {time:.2} s"))
 }
 
-/// −k_m·(x − z) with ż = (x − z)/T: a spring and a damper in series, beside the nominal ones. It starts relaxed.
+/// −k_m·(x − z) with ż = (x − z)/T: a spring and a damper in series, parallel to the nominal ones. It starts
+/// relaxed.
 pub(crate) struct Maxwell {
     pub(crate) stiffness: f64,
     /// Relaxation time in seconds.

@@ -1,7 +1,7 @@
-//! Laws that the vocabulary does not have: one file each, with a constant `LAW` and its line in [`REGISTRY`].
+//! Laws outside the vocabulary: one file each, with a constant `LAW` and a line in [`REGISTRY`].
 //!
-//! A stiffness that depends on the velocity is not among them: on a single oscillation it is a cubic
-//! stiffness but for its small third harmonic, so that the vocabulary's answer would not be wrong.
+//! A stiffness that depends on the velocity is not among them. On a single oscillation it equals a cubic
+//! stiffness except for a small third harmonic, so the vocabulary's answer would not be wrong.
 
 mod cogging;
 mod field;
@@ -16,11 +16,11 @@ pub(crate) use maxwell::Maxwell;
 
 use super::recalibration::Absorbed;
 
-/// Every law outside the vocabulary.
+/// All laws outside the vocabulary.
 pub(crate) static REGISTRY: &[UnlistedLaw] =
     &[field::LAW, cogging::LAW, maxwell::LAW, parametric::LAW, position_damping::LAW];
 
-/// Laws that a case hides alone, with what the vocabulary nearest to each absorbs.
+/// Returns the laws that a case hides alone, with what the nearest effects of the vocabulary absorb of each.
 pub(crate) fn alone() -> Vec<(&'static UnlistedLaw, Absorbed)> {
     REGISTRY.iter().filter_map(|law| Some((law, law.alone?))).collect()
 }

@@ -1,4 +1,4 @@
-//! A stiffness that is modulated.
+//! Parametric excitation: a stiffness that is modulated in time.
 
 use super::law::UnlistedLaw;
 use crate::effects::EffectClass;
@@ -22,7 +22,7 @@ pub(super) const LAW: UnlistedLaw = UnlistedLaw {
 
 fn draw(situation: &Situation, draws: &mut Draws) -> (OpenLaw, String) {
     let (stiffness, omega) = (situation.nominal.stiffness(), situation.omega());
-    // Away from twice the natural frequency, where it would grow without bound.
+    // Away from twice the natural frequency, at which the motion would grow without bound.
     let ratio = if draws.chance(0.5) { draws.uniform(0.02, 0.5) } else { draws.uniform(0.6, 1.4) };
     let phase = draws.uniform(-PI, PI);
     let law = move |size: f64| Parametric { stiffness: size * stiffness, frequency: ratio * omega, phase };

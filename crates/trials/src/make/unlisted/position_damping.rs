@@ -1,4 +1,4 @@
-//! A damping that grows with the deflection.
+//! Position-dependent damping: a damping that grows with the deflection.
 
 use super::law::UnlistedLaw;
 use crate::effects::EffectClass;
@@ -25,7 +25,7 @@ fn draw(situation: &Situation, _: &mut Draws) -> (OpenLaw, String) {
     (OpenLaw::new(1e-2, 100.0, law), "grows with the square".to_owned())
 }
 
-/// −c₂·x²·θ̇, as van der Pol's.
+/// −c₂·x²·θ̇, as in van der Pol's oscillator.
 pub(crate) struct PositionDamping {
     pub(crate) coefficient: f64,
 }

@@ -1,4 +1,5 @@
-//! `trainer diagnose --rigs`: several rigs of one build, each diagnosed by itself, and what they share.
+//! `trainer diagnose --rigs`: several rigs of one build, each diagnosed separately, and the effects that they
+//! share.
 
 mod shared;
 mod summary;
@@ -21,17 +22,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use workflow::Question;
 
-/// A rig and where its answer goes.
+/// Rig and the name of its answer's folder.
 struct Rig {
     name: String,
     folder: PathBuf,
     case: Case,
 }
 
-/// What became of a rig, with the digests of its records.
+/// Outcome of one rig, with the digests of its records.
 type Fate = Result<(Answered, String), FailedCase>;
 
-/// Diagnoses every rig and puts together what they share. A rig that fails is reported and the others go on.
+/// Diagnoses every rig and combines the answers. A rig that fails is reported, and the others continue.
 pub(super) fn rigs(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
     let start = Instant::now();
     let rigs = list(&arguments.rigs)?;
@@ -71,7 +72,7 @@ pub(super) fn rigs(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerErro
     Ok(Outcome::of(!result.complete, result.failed.is_empty()))
 }
 
-/// Writes what the rigs share, the report last.
+/// Writes the combined result, with the report last.
 fn kept_result(
     folder: &RunFolder,
     fates: Vec<Option<Fate>>,
@@ -105,7 +106,7 @@ fn kept_result(
     Ok(result)
 }
 
-/// The rigs of the folders named; those of one name are told apart by a number.
+/// Lists the rigs in the given folders; rigs with the same name are distinguished by a number.
 fn list(folders: &[PathBuf]) -> Result<Vec<Rig>, TrainerError> {
     if let [one] = folders {
         return Err(TrainerError::OneRig { rig: one.display().to_string() });
@@ -116,7 +117,7 @@ fn list(folders: &[PathBuf]) -> Result<Vec<Rig>, TrainerError> {
             folder: folder.display().to_string(),
             problem: problem.to_string(),
         };
-        // `.` and `..` have a name only once resolved.
+        // `.` and `..` have a name only after resolution.
         let resolved = folder.canonicalize().map_err(refused)?;
         if let Some(other) =
             rigs.iter().find(|rig| rig.folder.canonicalize().is_ok_and(|own| own == resolved))
@@ -139,7 +140,7 @@ fn list(folders: &[PathBuf]) -> Result<Vec<Rig>, TrainerError> {
     Ok(rigs)
 }
 
-/// The answer on one rig, in a run folder of its own; one that is finished is taken from there.
+/// Diagnoses one rig in a run folder of its own, or reads the finished answer from it.
 fn answered(
     arguments: &DiagnoseArguments,
     rig: &Rig,

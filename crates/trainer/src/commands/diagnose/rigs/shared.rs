@@ -1,4 +1,5 @@
-//! Classes of effects that several rigs of one build share: their probability over all rigs, and where coefficients agree.
+//! Classes of effects that several rigs of one build share: probability over all rigs, and agreement of
+//! coefficients.
 
 use record::Origin;
 use report::{format, nameless_share};
@@ -8,28 +9,30 @@ use results::{
 };
 use scoring::{Agreement, agreement};
 
-/// Probability that a system lacks a class of effects before anything was recorded of it. Simulated rigs that lack what real
-/// ones do have two to four effects of eleven classes, and rigs with one or none are asked about as well: about one class in
-/// five. It matters little: as a number of its own it stands in the result once, whatever the number of rigs.
+/// Prior probability that a rig has a class of effects that its nominal simulator lacks. Rigs simulated like
+/// real ones have two to four effects of eleven classes, and rigs with one effect or none are diagnosed as
+/// well: about one class in five. The value matters little: it enters the result only once, whatever the
+/// number of rigs.
 const PRIOR: f64 = 0.2;
 
-/// Probability of a class on a rig where no set with it was worth a fit: that of the least probable class that is stated.
+/// Probability of a class on a rig if no set with it was worth a fit: that of the least probable class that
+/// is stated.
 const NOT_FITTED: f64 = 0.1;
 
-/// Least probability of a class, and of its absence, that one rig's records can speak for. Stated probabilities cannot be
-/// tested beyond it, and no rig alone overrules all others.
+/// Minimum probability of a class, and of its absence, that a single rig's records can support. Stated
+/// probabilities cannot be tested beyond it, and no single rig overrules all the others.
 const LEAST: f64 = 1e-3;
 
-/// Probability from which on a class is there on a rig, by its own records.
+/// Probability from which a class counts as present on a rig according to its own records.
 const LIKELY: f64 = 0.5;
 
-/// Chance with which coefficients that are equal are said to differ.
+/// Significance level of the test for different coefficients: the chance that equal ones are said to differ.
 const SIGNIFICANCE: f64 = 0.01;
 
 /// 97.5 % quantile of the normal distribution: half the width of a 95 % interval in standard errors.
 const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
-/// A rig with its answer.
+/// Rig with its answer.
 pub(super) struct Answered {
     pub(super) name: String,
     pub(super) folder: String,
@@ -63,11 +66,12 @@ impl Answered {
     }
 }
 
-/// Probability that all rigs of a build have a class, from that on each by its own records.
+/// Computes the probability that all rigs of a build have a class from the probabilities on each rig by its
+/// own records.
 ///
-/// A rig's log odds are the prior's and what its records add. Given that the build has the class, or has not, the rigs'
-/// records are independent, so what they add is summed and the prior counted once:
-/// logit p = Σ logit pᵢ − (n − 1) logit p₀.
+/// A rig's log odds are the sum of the prior log odds and the contribution of its records. Given that the
+/// build has the class, or lacks it, the rigs' records are independent, so their contributions are summed and
+/// the prior is counted once: logit p = Σ logit pᵢ − (n − 1) logit p₀.
 pub(super) fn combined(probabilities: &[f64]) -> f64 {
     let logit = |p: f64| (p / (1.0 - p)).ln();
     let sum: f64 = probabilities.iter().map(|p| logit(p.clamp(LEAST, 1.0 - LEAST))).sum();
@@ -75,7 +79,8 @@ pub(super) fn combined(probabilities: &[f64]) -> f64 {
     1.0 / (1.0 + (-log_odds).exp())
 }
 
-/// Every class that some rig states, with its probability over all and its coefficients; the most probable first.
+/// Returns every class that some rig states, with its probability over all rigs and its coefficients; the
+/// most probable class comes first.
 pub(super) fn classes(rigs: &[Answered]) -> Vec<SharedClassRow> {
     let mut ids: Vec<&str> = Vec::new();
     for class in rigs.iter().flat_map(|rig| &rig.result.classes) {
@@ -100,10 +105,11 @@ pub(super) fn classes(rigs: &[Answered]) -> Vec<SharedClassRow> {
     rows
 }
 
-/// Share within its class from which on a kind is possible on a rig whose data do not tell the kind.
+/// Share within its class from which a kind is possible on a rig whose data do not distinguish the kinds.
 const POSSIBLE: f64 = 0.1;
 
-/// Coefficients of the kinds of a class that some rig names, or cannot rule out; those of the likeliest kind first.
+/// Returns the coefficients of the kinds of a class that some rig names or cannot rule out; those of the
+/// likeliest kind come first.
 fn coefficients(rigs: &[Answered], class: &str) -> Vec<SharedCoefficientRow> {
     let mut kinds: Vec<(&str, f64, bool)> = Vec::new();
     for rig in rigs {
@@ -195,7 +201,8 @@ fn mean(found: Agreement) -> WithInterval {
     WithInterval { value: found.mean, interval_95: [found.mean - half, found.mean + half] }
 }
 
-/// What the table says: classes from the surest on, then those that only some rigs show.
+/// Describes the table in sentences, one for each class that is likely on some rig, in the order of the
+/// table.
 pub(super) fn sentences(rigs: &[Answered], classes: &[SharedClassRow]) -> Vec<String> {
     let mut sentences: Vec<String> = classes
         .iter()
@@ -222,7 +229,8 @@ fn sentence(rigs: &[Answered], class: &SharedClassRow) -> String {
             report::listed(&absent, "and")
         )
     };
-    // Of several kinds that the data do not tell apart the likeliest one speaks; the table has all.
+    // If the data do not distinguish several kinds, only the likeliest one is described; the table has all of
+    // them.
     let likeliest = class.coefficients.first().map(|row| row.effect.as_str());
     let own = class.coefficients.iter().filter(|row| Some(row.effect.as_str()) == likeliest);
     let told: Vec<String> = own.map(told).collect();
@@ -231,7 +239,7 @@ fn sentence(rigs: &[Answered], class: &SharedClassRow) -> String {
     if told.is_empty() { format!("{lead}.") } else { format!("{lead}; {}.", told.join("; ")) }
 }
 
-/// A number of rigs in words as far as one reads them as such.
+/// Writes small numbers of rigs as words, others as digits.
 fn number(count: usize) -> String {
     match count {
         2 => "two".to_owned(),
@@ -241,7 +249,7 @@ fn number(count: usize) -> String {
     }
 }
 
-/// A coefficient with its values and whether they agree.
+/// Describes a coefficient: its values and whether they agree.
 fn told(row: &SharedCoefficientRow) -> String {
     let name = format!("{} of {}", row.parameter.replace('_', " "), report::in_a_sentence(&row.title));
     let unit = format::unit(&row.unit);
@@ -276,7 +284,7 @@ mod tests {
     #[test]
     fn a_rig_alone_keeps_its_probability_and_the_prior_is_counted_once() {
         assert!((combined(&[0.7]) - 0.7).abs() < 1e-12);
-        // A rig whose records say nothing has the prior's probability and changes nothing.
+        // A rig whose records carry no information has the prior probability and changes nothing.
         assert!((combined(&[0.7, PRIOR, PRIOR]) - 0.7).abs() < 1e-12);
         // Odds of 7/3 twice over, against a prior of 1/4: 49/9·4 = 21.8.
         assert!((combined(&[0.7, 0.7]) - 21.777_8 / 22.777_8).abs() < 1e-6);

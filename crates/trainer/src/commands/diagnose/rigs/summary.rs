@@ -1,14 +1,14 @@
-//! The terminal's answer on several rigs.
+//! Terminal output for several rigs.
 
 use crate::terminal::table::table;
 use report::{class_title, format};
 use results::{RigRow, RigsResult, SharedCoefficientRow};
 use std::path::Path;
 
-/// Classes below this probability over all rigs, and on each of them, are left to `rigs.json`.
+/// Probability, over all rigs and on each of them, below which a class is listed in `rigs.json` only.
 const LEAST: f64 = 0.1;
 
-/// What the rigs share: a table of classes, one of coefficients, and sentences.
+/// Summarizes the shared effects: a table of classes, a table of coefficients, and sentences.
 pub(super) fn summary(result: &RigsResult, folder: &Path) -> String {
     let names: Vec<&str> = result.rigs.iter().map(|rig| rig.name.as_str()).collect();
     let state = match (result.complete, result.failed.len()) {

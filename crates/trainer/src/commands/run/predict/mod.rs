@@ -1,4 +1,4 @@
-//! `task = "predict"`: many methods, classical and learned, scored on peaks that they did not see.
+//! `task = "predict"`: many methods, classical and learned, scored on peaks that were held out.
 
 mod summary;
 mod trials;
@@ -27,8 +27,8 @@ use studies::{
 };
 use trials::Trials;
 
-/// Prepares every problem, fits every method on every draw and split, keeps going where one fails, and puts
-/// the tables together.
+/// Prepares every problem, fits every method on every draw and split, continues if one fails, and builds the
+/// tables.
 pub(crate) fn predict(
     arguments: &ExperimentArguments,
     study: &PredictionStudy,
@@ -59,7 +59,7 @@ pub(crate) fn predict(
     let methods = pretrain(study, methods, &pool, cancel, &ledger)?;
     let trials = run_all(study, &problems, &methods, &pool, cancel, &ledger, output)?;
     let _saving = Saving::begin();
-    // A request that comes after the last trial interrupts nothing.
+    // A request to stop after the last trial interrupts nothing.
     let interrupted = cancel.is_requested() && trials.iter().any(ProblemTrials::is_interrupted);
     if interrupted {
         ledger.flush()?;
@@ -74,7 +74,7 @@ pub(crate) fn predict(
     Ok(Outcome::of(interrupted, true))
 }
 
-/// What the run is made of.
+/// Returns the inputs that define the run.
 fn beginning<'a>(
     study: &'a PredictionStudy,
     pool: &ThreadPool,
@@ -91,7 +91,7 @@ fn beginning<'a>(
     }
 }
 
-/// Amortized methods are trained once, for all problems.
+/// Trains the amortized methods, once for all problems.
 fn pretrain(
     study: &PredictionStudy,
     methods: Vec<Method>,
@@ -110,7 +110,8 @@ fn pretrain(
     pool.install(|| methods.into_par_iter().map(train).collect())
 }
 
-/// Every trial there is to make, in the order of problems, methods, draws and splits, whatever the threads.
+/// Runs every planned trial. The order is that of problems, methods, draws and splits, whatever the number of
+/// threads.
 fn run_all(
     study: &PredictionStudy,
     problems: &[Result<Ready, Missing>],
@@ -121,10 +122,10 @@ fn run_all(
     output: Output,
 ) -> Result<Vec<ProblemTrials>, TrainerError> {
     let ready: Vec<&Ready> = problems.iter().filter_map(|problem| problem.as_ref().ok()).collect();
-    // A replicate is fitted with a seed of its own, so that its start values are no part of what they share.
+    // Each draw is fitted with its own seed, so that the draws do not share start values.
     let last = study.seed.checked_add(study.settings.draws as u64);
     last.ok_or(TrainerError::TooManySeeds { seed: study.seed })?;
-    // Methods innermost: the slow ones are then spread over the whole list.
+    // Methods are innermost, so that the slow ones are spread over the whole list.
     let jobs: Vec<(usize, usize, usize, usize)> = ready
         .iter()
         .enumerate()
@@ -171,7 +172,7 @@ fn run_all(
     Ok(all)
 }
 
-/// Writes everything that is left to write, the report last.
+/// Writes the tables and results that are not written yet, with the report last.
 fn keep(
     folder: &RunFolder,
     result: &PredictionResult,

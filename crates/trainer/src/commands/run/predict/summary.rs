@@ -1,4 +1,4 @@
-//! The terminal's answer to `task = "predict"`: a table for each problem.
+//! Terminal output of `task = "predict"`: a table for each problem.
 
 use crate::terminal::table::table;
 use report::format;
@@ -11,7 +11,7 @@ use std::path::Path;
 const HEADER: [&str; 10] =
     ["method", "inside", "beyond", "%", "truth", "log p", "in 95 %", "λ in 95 %", "draws", "s"];
 
-/// The result as a person wants to read it.
+/// Formats the result for the terminal.
 pub(super) fn summary(result: &PredictionResult, folder: &Path) -> String {
     let splits = &result.splits;
     let mut parts = vec![format!(
@@ -57,12 +57,12 @@ fn problem(row: &ProblemRow) -> String {
     }
 }
 
-/// Methods with an outcome, and those whose turn had not come when the run was interrupted.
+/// Splits the methods into those with an outcome and those not begun when the run was interrupted.
 fn begun(study: &ProblemStudy) -> (Vec<&PredictionRow>, Vec<&PredictionRow>) {
     study.methods.iter().partition(|row| !row.outcome.is_not_begun())
 }
 
-/// Methods that draw the best exponential's own line share one row.
+/// Builds the rows of a problem. Methods that draw the same line as the best exponential share its row.
 fn rows(study: &ProblemStudy) -> Vec<Vec<String>> {
     let (lines, others): (Vec<&PredictionRow>, Vec<&PredictionRow>) =
         begun(study).0.into_iter().partition(|row| is_same_line(row, study));
@@ -88,7 +88,7 @@ fn error(row: &PredictionRow) -> f64 {
     }
 }
 
-/// Whether a method's errors are those of the best exponential to six digits.
+/// Returns `true` if a method's errors equal those of the best exponential to six digits.
 fn is_same_line(row: &PredictionRow, study: &ProblemStudy) -> bool {
     let PredictionOutcome::Scored(scores) = &row.outcome else { return false };
     let (Some(inside), Some(beyond)) = (&scores.interpolation, &scores.extrapolation) else { return false };

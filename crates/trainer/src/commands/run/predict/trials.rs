@@ -9,7 +9,7 @@ use results::Failure;
 use std::time::Instant;
 use studies::{Split, Trial, seen};
 
-/// What every trial of a study shares.
+/// Settings that all trials of a study share.
 pub(crate) struct Trials<'a> {
     pub(crate) max_steps: Option<u64>,
     pub(crate) cancel: &'a Cancel,
@@ -17,7 +17,8 @@ pub(crate) struct Trials<'a> {
 }
 
 impl Trials<'_> {
-    /// Fits the peaks that the split leaves and asks for all, unless that was done before and kept under the name.
+    /// Fits the peaks that are not held out and predicts all of them, unless the trial was already finished
+    /// and stored under this name.
     pub(crate) fn run(
         &self,
         name: &str,
@@ -34,7 +35,7 @@ impl Trials<'_> {
         }
         let trial = self.make(method, envelope, split, seed);
         match &trial {
-            // It may have been stopped halfway.
+            // The fit may have been stopped halfway.
             Ok(_) if self.cancel.is_requested() => return Ok(Err(Failure::NotBegun)),
             Ok(made) => self.ledger.keep(name, made, made.seconds)?,
             Err(_) => {}
