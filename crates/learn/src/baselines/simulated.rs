@@ -1,8 +1,8 @@
-//! Simulators as models: the nominal one as it is, recalibrated, repaired by a diagnosis, and the true law fitted
-//! exactly.
+//! Simulators as models: nominal, recalibrated, repaired by a diagnosis, and the true law with fitted
+//! coefficients.
 
 use crate::data::{DataSet, Trajectory};
-use crate::flow::{Fit, Shooter, Shooting, Shot, State, first_guess, fit};
+use crate::flow::{Fit, LENGTHS, Shooter, Shooting, Shot, State, first_guess, fit, phase_name};
 use crate::judge::validation_error;
 use crate::{Ahead, Coefficient, Context, Fitted, LearnError, Model, Past, Place, Predicted, Torque};
 use diagnosis::{Observations, diagnose};
@@ -12,7 +12,7 @@ use estimator::Reached;
 use nalgebra::{Matrix2, Vector2};
 use record::{Clock, ClockChoice, Quantity, Record};
 
-/// A simulator as a model.
+/// Simulator as a model.
 #[derive(Debug, Clone)]
 pub struct Simulated {
     system: System,
@@ -22,13 +22,14 @@ pub struct Simulated {
     coefficients: Vec<Coefficient>,
 }
 
-/// Steps of a search for a start state.
+/// Gauss–Newton steps of a search for an initial state.
 const STEPS: usize = 8;
 
-/// The oscillator of a nominal simulator with the effects that it has in the system.
+/// Builds the system of a nominal simulator: its oscillator with the simulator's known effects on the motion.
+/// Effects of the measurement chain are left out.
 ///
 /// # Errors
-/// [`LearnError::Dynamics`] where these contradict each other.
+/// [`LearnError::Dynamics`] if the effects contradict each other.
 pub fn system_of(nominal: &NominalSimulator) -> Result<System, LearnError> {
     let acting = nominal.effects().iter().map(|known| known.active);
     let acting: Vec<Active> = acting.filter(|active| matches!(active.effect(), Effect::System(_))).collect();
@@ -44,7 +45,7 @@ impl Simulated {
         Self { system, hold: data.hold, period_s: data.period_s, fitted, coefficients: Vec::new() }
     }
 
-    /// The state at the past's first sample whose motion lies nearest to it: Gauss–Newton with exact sensitivities.
+    /// Fits the state at the past's first sample by least squares: Gauss–Newton with exact sensitivities.
     fn start(&self, past: &Trajectory) -> Result<State, LearnError> {
         let free = [Free::StartPosition, Free::StartVelocity];
         let mut model = Motion::new(&self.system, &free, Settings::default())?;
@@ -122,7 +123,7 @@ fn fitted(model: Simulated, steps: u64, converged: bool) -> Fitted {
     Fitted { model: Box::new(model), reached, steps }
 }
 
-/// The nominal simulator as it is.
+/// Builds the nominal simulator without fitting anything.
 ///
 /// # Errors
 /// [`LearnError::NoNominal`], [`LearnError::Dynamics`].
@@ -131,7 +132,8 @@ pub fn nominal(data: &DataSet, _context: &Context<'_>) -> Result<Fitted, LearnEr
     Ok(fitted(Simulated::new(system, data, 0), 0, true))
 }
 
-/// The nominal simulator with its coefficients fitted; what effects it has stays as stated.
+/// Builds the recalibrated simulator: the nominal one with its own coefficients fitted. Its effects stay as
+/// stated.
 ///
 /// # Errors
 /// As [`nominal`].
@@ -147,7 +149,7 @@ pub fn recalibrated(data: &DataSet, context: &Context<'_>) -> Result<Fitted, Lea
     calibrated(system_of(nominal)?, &free, data, context)
 }
 
-/// The true law with its coefficients fitted to whole trajectories: what nobody who knows more can do better.
+/// Fits the coefficients of the true law to whole trajectories: the best that a learner could reach.
 ///
 /// # Errors
 /// As [`recalibrated`].
@@ -171,7 +173,7 @@ pub fn exact(truth: &System, data: &DataSet, context: &Context<'_>) -> Result<Fi
     calibrated(truth.clone(), &free, data, context)
 }
 
-/// A system that predicts pieces, some of its numbers free.
+/// System that predicts pieces, with some of its coefficients free.
 struct SystemShooter {
     model: Motion,
     hold: Hold,
@@ -196,10 +198,7 @@ impl Shooter for SystemShooter {
     }
 }
 
-/// Lengths of the pieces in periods, as for the learners.
-const LENGTHS: [f64; 3] = [2.0, 8.0, 1e6];
-
-/// Training samples that a calibration uses at most.
+/// Largest number of training samples used by a calibration.
 const SAMPLES: usize = 20_000;
 
 fn calibrated(
@@ -225,7 +224,7 @@ fn calibrated(
     for periods in LENGTHS {
         let pieces = data.training_pieces(periods * data.period_s, SAMPLES);
         let starts = pieces.iter().map(|piece| first_guess(piece, data.period_s)).collect();
-        let phase = format!("pieces of {periods} periods");
+        let phase = phase_name(periods);
         let shooting =
             Shooting { pieces: &pieces, noise: data.noise, penalty: None, most_steps: 40, phase: &phase };
         let found = match fit(&shooter, &shooting, weights.clone(), starts, context) {
@@ -277,7 +276,8 @@ fn coefficients(free: &[Free], fit: &Fit) -> Vec<Coefficient> {
     free.iter().zip(&fit.weights).enumerate().map(one).collect()
 }
 
-/// The value of a quantity in a system; `None` of an effect that it lacks, and of a start, which is no part of it.
+/// Returns the value of a quantity in a system; `None` for an effect that the system lacks, and for an
+/// initial state, which is not part of the system.
 fn value(system: &System, quantity: Free) -> Option<f64> {
     let nominal = system.nominal().coefficients();
     match quantity {
@@ -293,7 +293,7 @@ fn value(system: &System, quantity: Free) -> Option<f64> {
     }
 }
 
-/// The system with fitted values; `None` where they have no physical meaning.
+/// Returns the system with fitted values; `None` if the values have no physical meaning.
 fn with_values(system: &System, free: &[Free], values: &[f64]) -> Option<System> {
     let mut coefficients = system.nominal().coefficients();
     let mut effects: Vec<Active> = system.effects().to_vec();
@@ -317,10 +317,11 @@ fn with_values(system: &System, free: &[Free], values: &[f64]) -> Option<System>
     System::new(system.nominal().with_coefficients(coefficients).ok()?, effects).ok()
 }
 
-/// Training samples that a diagnosis is given at most: the ceiling of knowledge is one row of a table.
+/// Largest number of training samples passed to the diagnosis, which limits the time spent on one row of a
+/// table.
 const DIAGNOSED: usize = 20_000;
 
-/// The simulator as `diagnose` repairs it from the training part.
+/// Builds the simulator that `diagnose` repairs from the training part.
 ///
 /// # Errors
 /// [`LearnError::NoNominal`], [`LearnError::Diagnosis`].

@@ -1,5 +1,5 @@
-//! Models that are differential equations, θ̈ = a(θ, θ̇, direction, u): integration with exact events and sensitivities,
-//! start states, and fits by multiple shooting.
+//! Models that are differential equations, θ̈ = a(θ, θ̇, direction, u): integration with exact events and
+//! sensitivities, initial states, and fits by multiple shooting.
 
 mod field;
 mod model;
@@ -12,5 +12,5 @@ pub use field::{Field, Slope};
 pub use model::{FlowModel, Posterior, Running};
 pub use run::{Motion, Run};
 pub use shooter::FieldShooter;
-pub use shooting::{Fit, Penalty, Shooter, Shooting, Shot, fit};
+pub use shooting::{Fit, LENGTHS, Penalty, Shooter, Shooting, Shot, fit, phase_name};
 pub use start::{State, first_guess};

@@ -1,7 +1,9 @@
-//! Multiple shooting: weights shared by all pieces, a start state for each, by Levenberg–Marquardt.
+//! Multiple shooting: weights shared by all pieces (shooting intervals) and an initial state for each, by
+//! Levenberg–Marquardt.
 //!
-//! Start states are eliminated piece by piece (Schur's complement), so a step costs no more for many pieces than for
-//! few. Bock, Plitt, IFAC Proceedings 17 (1984) 1603; Marquardt, SIAM Journal on Applied Mathematics 11 (1963) 431.
+//! The initial states are eliminated piece by piece (Schur complement), so the linear system to solve has
+//! only the size of the weights. Bock, Plitt, IFAC Proceedings 17 (1984) 1603; Marquardt, SIAM Journal on
+//! Applied Mathematics 11 (1963) 431.
 
 use super::start::State;
 use crate::data::Trajectory;
@@ -9,87 +11,99 @@ use crate::linear::{inverse, raised, solve};
 use crate::{Context, LearnError, Step};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
+/// Lengths of the pieces of consecutive fits, in periods; the last one means whole parts.
+pub const LENGTHS: [f64; 3] = [2.0, 8.0, 1e6];
+
+/// Returns the name of the fit on pieces of one of these lengths.
+#[must_use]
+pub fn phase_name(periods: f64) -> String {
+    if periods < 1e6 { format!("pieces of {periods} periods") } else { "whole parts".to_owned() }
+}
+
 /// Residuals of a piece and the Jacobian of its prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shot {
-    /// Observed less predicted, one for each sample.
+    /// Observed minus predicted position, one per sample.
     pub residuals: Vec<f64>,
-    /// Row-major ∂predicted/∂(weights, start position, start velocity).
+    /// Row-major ∂predicted/∂(weights, initial position, initial velocity).
     pub jacobian: Vec<f64>,
 }
 
-/// What predicts a piece from its start.
+/// Model that predicts a piece from its initial state.
 pub trait Shooter {
-    /// Number of shared weights.
+    /// Returns the number of shared weights.
     fn weights(&self) -> usize;
 
     /// Predicts a piece.
     ///
     /// # Errors
-    /// [`LearnError::Diverged`] where the motion runs away.
+    /// [`LearnError::Diverged`] if the motion diverges.
     fn shoot(&self, weights: &[f64], start: State, piece: &Trajectory) -> Result<Shot, LearnError>;
 }
 
-/// A Gaussian prior of the weights, independent of each other.
+/// Gaussian prior of the weights, independent for each weight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Penalty {
-    /// Means.
+    /// Prior means.
     pub mean: Vec<f64>,
-    /// One over the variances.
+    /// Inverse prior variances.
     pub precision: Vec<f64>,
 }
 
-/// What is fitted, and how long.
+/// Data, prior and budget of a fit.
 #[derive(Clone, Copy)]
 pub struct Shooting<'a> {
     /// The pieces.
     pub pieces: &'a [Trajectory],
-    /// Standard deviation of a sample, which the prior is weighed against.
+    /// Standard deviation of a sample; it sets the weight of the prior.
     pub noise: f64,
-    /// Prior of the weights, where there is one.
+    /// Prior of the weights; `None` for a flat prior.
     pub penalty: Option<&'a Penalty>,
-    /// Most steps.
+    /// Largest number of steps.
     pub most_steps: u64,
-    /// Name of this part of a training, for the trace.
+    /// Name of this phase of the training, for the trace.
     pub phase: &'a str,
 }
 
-/// A fit by multiple shooting.
+/// Result of multiple shooting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The weights.
+    /// Fitted weights.
     pub weights: Vec<f64>,
-    /// Start state of each piece.
+    /// Initial state of each piece.
     pub starts: Vec<State>,
     /// Sum of squared residuals.
     pub rss: f64,
     /// Number of residuals.
     pub samples: usize,
-    /// Information on the weights: JᵀJ with the start states eliminated, without prior, of residuals in their unit.
+    /// Information matrix of the weights without the prior: JᵀJ of the unscaled residuals, with the initial
+    /// states eliminated.
     pub information: DMatrix<f64>,
-    /// Samples that count as one, by the correlation of the residuals: 1 + 2·Σρ².
+    /// Number of correlated samples that count as one independent sample: 1 + 2·Σρ² of the residuals.
     pub correlation: f64,
-    /// Steps taken.
+    /// Number of steps taken.
     pub steps: u64,
-    /// Whether the last step changed next to nothing.
+    /// `true` if the last steps hardly changed the objective, or no step could lower it.
     pub converged: bool,
 }
 
 impl Fit {
-    /// Root mean square residual.
+    /// Returns the root mean square residual.
     #[must_use]
     pub fn rms(&self) -> f64 {
         (self.rss / self.samples.max(1) as f64).sqrt()
     }
 
-    /// Variance of a residual, widened for correlation: what the information is divided by.
+    /// Returns the variance of a residual, inflated for correlation; the information divided by it is the
+    /// inverse covariance.
     #[must_use]
     pub fn variance(&self) -> f64 {
         let free = self.samples.saturating_sub(self.weights.len() + 2 * self.starts.len()).max(1);
         self.correlation * self.rss / free as f64
     }
 
-    /// Covariance of the weights without a prior; `None` where the data leave a direction open.
+    /// Returns the covariance of the weights without a prior; `None` if the data do not determine the
+    /// weights.
     #[must_use]
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         inverse(&self.information).map(|inverse| inverse * self.variance())
@@ -105,7 +119,7 @@ struct Block {
     start_right: Vector2<f64>,
 }
 
-/// A point of the search with its normal equations.
+/// Point of the search with its normal equations.
 struct Point {
     weights: Vec<f64>,
     starts: Vec<State>,
@@ -114,13 +128,13 @@ struct Point {
     rss: f64,
 }
 
-/// Relative change of the objective below which a fit is done.
+/// Relative change of the objective below which a step counts as converged.
 const SMALL: f64 = 1e-9;
 
-/// Fits weights and start states from a first guess of both.
+/// Fits weights and initial states from a first guess of both.
 ///
 /// # Errors
-/// [`LearnError::Diverged`] where the first guess runs away, [`LearnError::Interrupted`].
+/// [`LearnError::Diverged`] if the first guess diverges, [`LearnError::Interrupted`].
 pub fn fit(
     shooter: &dyn Shooter,
     shooting: &Shooting<'_>,
@@ -193,7 +207,7 @@ impl Shooting<'_> {
         point.rss + self.noise * self.noise * prior
     }
 
-    /// The next point, by a damped step.
+    /// Returns the next point, by a damped step.
     fn step(&self, point: &Point, damping: f64) -> Option<(Vec<f64>, Vec<State>)> {
         let count = point.weights.len();
         let (mut matrix, mut right) = reduced(&point.blocks, count, damping)?;
@@ -235,7 +249,7 @@ fn block(shot: &Shot, count: usize) -> Block {
     }
 }
 
-/// Normal equations of the weights with the start states eliminated.
+/// Returns the normal equations of the weights with the initial states eliminated.
 fn reduced(blocks: &[Block], count: usize, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let (mut matrix, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
     for block in blocks {
@@ -247,8 +261,10 @@ fn reduced(blocks: &[Block], count: usize, damping: f64) -> Option<(DMatrix<f64>
     Some((matrix, right))
 }
 
-/// 1 + 2·Σρ² over lags within the pieces, weighed by their lengths: samples that count as one in a comparison of sums of
-/// squares. It does not cancel where the correlation swings, as a sum of ρ would.
+/// Returns 1 + 2·Σρ² over the lags within each piece, averaged with the pieces' lengths as weights: the
+/// number of samples that count as one when sums of squares are compared.
+///
+/// Unlike a sum of ρ, it does not cancel if the correlation oscillates.
 fn correlation(pieces: &[Vec<f64>]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for residuals in pieces {
@@ -258,7 +274,7 @@ fn correlation(pieces: &[Vec<f64>]) -> f64 {
         }
         let most = (residuals.len() / 4).min(400);
         let count = residuals.len() as f64;
-        // Chance alone makes ρ² about 1/n at every lag.
+        // White noise alone has an expected ρ² of about 1/n at every lag.
         let square = |lag: usize| {
             let product: f64 = residuals.iter().zip(residuals.iter().skip(lag)).map(|(a, b)| a * b).sum();
             (product / power).powi(2) - 1.0 / count

@@ -1,4 +1,4 @@
-//! The learner that every architecture gets.
+//! Learner shared by all architectures.
 
 use super::frame::Framed;
 use super::model::SequenceModel;
@@ -11,24 +11,24 @@ use estimator::Reached;
 use neural::{DeviceKind, device_of};
 use settings::{Resolved, SettingsError};
 
-/// An architecture with its settings.
+/// Architecture with its settings.
 struct SequenceLearner<A> {
     architecture: A,
     settings: Settings,
 }
 
-/// Share of the steps over which the learning rate rises, and its share at the end.
+/// Share of the steps over which the learning rate rises, and final learning rate as a share of the largest.
 const WARM_UP: f64 = 0.05;
 const LAST: f64 = 0.01;
 
-/// Norm that a gradient is cut to.
+/// Norm to which a gradient is clipped.
 const CLIP: f64 = 1.0;
 
-/// Most windows and most blocks of a validation.
+/// Largest number of windows, and of blocks per window, of a validation.
 const HELD_WINDOWS: usize = 24;
 const HELD_BLOCKS: usize = 40;
 
-/// The learner of an architecture, from its section.
+/// Builds the learner of an architecture from its section.
 ///
 /// # Errors
 /// [`SettingsError`] for a section of another form, and for a device that the program was built without.
@@ -52,7 +52,7 @@ pub fn build<A: Architecture>(resolved: &Resolved) -> Result<Box<dyn Learner>, S
     Ok(Box::new(SequenceLearner { architecture, settings }))
 }
 
-/// A model of an architecture, from its file.
+/// Restores a model of an architecture from its file.
 ///
 /// # Errors
 /// [`LearnError::Stored`] for a file of another form.
@@ -60,7 +60,7 @@ pub fn restore<A: Architecture>(stored: &Stored) -> Result<Box<dyn Model>, Learn
     Ok(Box::new(SequenceModel::<A>::restored(stored)?))
 }
 
-/// Windows of the validation part: long ones of equal length, evenly chosen.
+/// Returns the windows of the validation part: long ones of equal length, evenly chosen.
 fn held(parts: &[Trajectory], past: usize, block: usize) -> Vec<Window> {
     // Without a validation part there is no window.
     let shortest = parts.iter().map(Trajectory::len).min().unwrap_or(0);
@@ -75,8 +75,8 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
         let settings = &self.settings;
         let Framed { frame, train: parts, validation } = Framed::new(data, settings)?;
         // Without a training part there is no window, which the training refuses.
-        let shortest = parts.iter().map(Trajectory::len).max().unwrap_or(0);
-        let blocks = (shortest.saturating_sub(frame.past) / frame.block).clamp(1, settings.blocks);
+        let longest = parts.iter().map(Trajectory::len).max().unwrap_or(0);
+        let blocks = (longest.saturating_sub(frame.past) / frame.block).clamp(1, settings.blocks);
         let future = blocks * frame.block;
         let stride = windows(&parts, frame.past, future, 1).len().div_ceil(settings.windows).max(1);
         let device = device_of(settings.device, settings.precision)?;

@@ -1,38 +1,39 @@
-//! From a regression's terms to a model: weights refitted to whole trajectories, superfluous terms taken out.
+//! Model from a regression's terms: weights refitted to whole trajectories, superfluous terms removed.
 
 use super::{Library, Term, law};
 use crate::data::{DataSet, Trajectory};
-use crate::flow::{Field, FieldShooter, Fit, FlowModel, Posterior, Running, Shooting, first_guess, fit};
+use crate::flow::{
+    Field, FieldShooter, Fit, FlowModel, LENGTHS, Posterior, Running, Shooting, first_guess, fit, phase_name,
+};
 use crate::judge::validation_error;
 use crate::{Context, Fitted, LearnError, Model, Stored};
 use estimator::Reached;
 use nalgebra::DMatrix;
 
-/// How a regression's law is finished.
+/// Options for finishing a regression's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finishing {
-    /// Whether weights are refitted to trajectories; otherwise they stay the regression's.
+    /// `true` if weights are refitted to trajectories; otherwise the regression's weights are kept.
     pub refit: bool,
-    /// Most training samples that a refit uses.
+    /// Largest number of training samples used by a refit.
     pub samples: usize,
-    /// Most steps of each refit.
+    /// Largest number of steps of each refit.
     pub most_steps: u64,
 }
 
-/// Lengths of the pieces that trajectories are refitted on, in periods; then whole parts.
-const LENGTHS: [f64; 3] = [2.0, 8.0, f64::INFINITY];
-
-/// A longer piece is preferred where it validates within this factor of the best.
+/// A longer piece is preferred if its validation error is within this factor of the smallest.
 const AS_GOOD: f64 = 1.02;
 
-/// Makes a model of a law: `weights` and `inclusion` belong to the library's terms, weights of 0 to terms left out.
+/// Builds a model of a law. `weights` and `inclusion` belong to the library's terms; terms that were left out
+/// have a weight of 0.
 ///
-/// With a refit, pieces grow from two periods to whole parts, each fit beginning where the one before ended; the length
-/// that validates best stays. Terms whose weight is lost in its error are taken out one by one (the criterion of Schwarz,
-/// Annals of Statistics 6 (1978) 461, on as many samples as the correlation of the residuals leaves).
+/// With a refit, pieces grow from two periods to whole parts, and each fit starts from the previous one. The
+/// longest pieces whose validation error is close to the smallest are kept. Terms whose weight is
+/// insignificant are removed one by one, by the criterion of Schwarz (Annals of Statistics 6 (1978) 461) with
+/// the effective number of samples that the correlation of the residuals leaves.
 ///
 /// # Errors
-/// [`LearnError`] where no length can be fitted and the regression's own law runs away.
+/// [`LearnError`] if no length can be fitted and the regression's own law diverges.
 pub fn finish(
     learner: &'static str,
     data: &DataSet,
@@ -65,7 +66,7 @@ pub fn finish(
     Ok(Fitted { model: Box::new(model), reached, steps })
 }
 
-/// Terms with weights, and the fit that they come from.
+/// Terms with weights, and the fit that the weights come from.
 #[derive(Clone)]
 struct Law {
     terms: Vec<Term>,
@@ -89,7 +90,7 @@ impl Law {
         law(learner, &self.library(), (&self.weights, errors.as_deref()), posterior, running, data)
     }
 
-    /// The same law fitted to pieces; `None` where the motion runs away.
+    /// Fits the same law to pieces; `None` if the motion diverges.
     fn fitted(
         &self,
         data: &DataSet,
@@ -109,7 +110,7 @@ impl Law {
         }
     }
 
-    /// The term whose weight is most lost in its error, where that is lost enough to be taken out.
+    /// Returns the index of the least significant term, if its weight is insignificant enough to be removed.
     fn superfluous(&self) -> Option<usize> {
         let fit = self.fit.as_ref()?;
         let covariance = fit.covariance()?;
@@ -130,7 +131,8 @@ impl Law {
     }
 }
 
-/// The law refitted on the length of pieces that validates best, without superfluous terms, and the steps it took.
+/// Refits the law on pieces of each length, removes superfluous terms, and returns the law of the length
+/// chosen by validation, with the total number of steps.
 fn refitted(
     learner: &'static str,
     data: &DataSet,
@@ -140,12 +142,8 @@ fn refitted(
 ) -> Result<Option<(Law, u64)>, LearnError> {
     let (mut found, mut steps, mut from): (Vec<(f64, Law)>, u64, Law) = (Vec::new(), 0, plain);
     for periods in LENGTHS {
-        let pieces = data.training_pieces(data.period_s * periods.min(1e6), finishing.samples);
-        let phase = if periods.is_finite() {
-            format!("pieces of {periods} periods")
-        } else {
-            "whole parts".to_owned()
-        };
+        let pieces = data.training_pieces(data.period_s * periods, finishing.samples);
+        let phase = phase_name(periods);
         let shooting = Shooting {
             pieces: &pieces,
             noise: data.noise,
@@ -154,7 +152,7 @@ fn refitted(
             phase: &phase,
         };
         let Some(mut law) = from.fitted(data, &pieces, context, &shooting)? else { break };
-        // A law that was not fitted took no step.
+        // A law that was not fitted took no steps.
         steps += law.fit.as_ref().map_or(0, |fit| fit.steps);
         while let Some(place) = law.superfluous() {
             let Some(shorter) = law.without(place).fitted(data, &pieces, context, &shooting)? else { break };
@@ -163,10 +161,10 @@ fn refitted(
             law = shorter;
         }
         let error = validation_error(&law.model(learner, data, context), data);
-        // The next length may have use for what this one is too short to tell.
+        // Longer pieces may need a term that these pieces are too short to determine.
         let weight_of =
             |term: &Term| law.terms.iter().zip(&law.weights).find(|(own, _)| *own == term).map(|(_, w)| *w);
-        // A term that was taken out begins from nothing.
+        // A removed term starts again from a weight of zero.
         from.weights = from.terms.iter().map(|term| weight_of(term).unwrap_or(0.0)).collect();
         found.push((error, law));
     }
@@ -175,7 +173,7 @@ fn refitted(
     Ok(chosen.map(|(_, law)| (law, steps)))
 }
 
-/// The model of a sparse learner from a file.
+/// Restores the model of a sparse learner from a file.
 ///
 /// # Errors
 /// [`LearnError::Stored`] for a file of another form.

@@ -1,29 +1,26 @@
 //! Fits on pieces that grow from two periods to whole parts.
 
 use crate::data::DataSet;
-use crate::flow::{Field, FieldShooter, Fit, Penalty, Shooting, first_guess, fit};
+use crate::flow::{Field, FieldShooter, Fit, LENGTHS, Penalty, Shooting, first_guess, fit, phase_name};
 use crate::{Context, LearnError};
 
-/// Lengths of the pieces in periods.
-const LENGTHS: [f64; 3] = [2.0, 8.0, 1e6];
-
-/// A longer piece is preferred where it validates within this factor of the best.
+/// A longer piece is preferred if its validation error is within this factor of the smallest.
 const AS_GOOD: f64 = 1.02;
 
-/// How far a progressive fit may go.
+/// Limits of a progressive fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// Most training samples.
+    /// Largest number of training samples.
     pub samples: usize,
-    /// Most steps of each fit.
+    /// Largest number of steps of each fit.
     pub most_steps: u64,
 }
 
-/// Fits a field on growing pieces, each fit beginning with the weights of the one before, and gives the fit whose model
-/// validates best, with the steps of all.
+/// Fits a field on growing pieces; each fit starts with the weights of the previous one. Returns the fit
+/// chosen by validation error, with the total number of steps.
 ///
 /// # Errors
-/// [`LearnError::Diverged`] where not even the shortest pieces can be followed, [`LearnError::Interrupted`].
+/// [`LearnError::Diverged`] if even the shortest pieces cannot be followed, [`LearnError::Interrupted`].
 pub fn progressive(
     field: &dyn Field,
     data: &DataSet,
@@ -36,8 +33,7 @@ pub fn progressive(
     let (mut found, mut steps, mut weights): (Vec<(f64, Fit)>, u64, Vec<f64>) = (Vec::new(), 0, start);
     for periods in LENGTHS {
         let pieces = data.training_pieces(data.period_s * periods, progress.samples);
-        let phase =
-            if periods < 1e6 { format!("pieces of {periods} periods") } else { "whole parts".to_owned() };
+        let phase = phase_name(periods);
         let shooting = Shooting {
             pieces: &pieces,
             noise: data.noise,
