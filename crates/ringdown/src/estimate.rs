@@ -14,13 +14,14 @@ use settings::Document;
 /// Options of an estimate, with the defaults of the command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EstimateOptions {
-    /// The way from the record to its peaks; the default is the recommended one.
+    /// Pipeline from the record to its peaks; by default the recommended one.
     pub pipeline: Pipeline,
-    /// Root of every random draw.
+    /// Root seed of all random draws.
     pub seed: u64,
-    /// Cap on the training steps; `None` leaves them to the method, 0 asks for the untrained estimate.
+    /// Limit on the training steps; `None` for the method's own limit, 0 for the untrained estimate.
     pub max_steps: Option<u64>,
-    /// Settings of the method as lines of TOML, such as `hidden = [16]`; `trainer explain estimator` lists them.
+    /// Settings of the method as lines of TOML, such as `hidden = [16]`. `trainer explain estimator` lists
+    /// them.
     pub settings: String,
 }
 
@@ -41,7 +42,7 @@ pub struct Method {
     pub summary: &'static str,
 }
 
-/// Every method there is: the paper's classical ones, then the learned ones.
+/// Returns all methods: the paper's classical ones, then the learned ones.
 ///
 /// ```
 /// assert!(ringdown_lab::methods().any(|method| method.id == "gaussian-process"));
@@ -52,16 +53,16 @@ pub fn methods() -> impl Iterator<Item = Method> {
     classical.chain(learned)
 }
 
-/// An estimate of the damping of a free decay, beside least squares on the same peaks.
+/// Estimated damping of a free decay, with least squares on the same peaks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// Damping ratio ζ = λ/√(λ² + ω²); in the paper's pipeline λ/ω.
+    /// Damping ratio ζ = λ/√(λ² + ω²), or λ/ω in the paper's pipeline.
     pub damping_ratio: f64,
-    /// Standard error of ζ, where the method states one, for residuals as they scatter on this record.
+    /// Standard error of ζ for the scatter of the residuals on this record, if the method states one.
     pub damping_ratio_std_error: Option<f64>,
     /// Decay rate λ of the amplitude, in 1/s.
     pub decay_rate: f64,
-    /// 95 % interval of λ, where the method states one.
+    /// 95 % interval of λ, in 1/s, if the method states one.
     pub decay_rate_interval_95: Option<[f64; 2]>,
     /// Angular frequency ω = 2π/(median period), in rad/s.
     pub omega_rad_s: f64,
@@ -69,23 +70,24 @@ pub struct Estimate {
     pub peaks: usize,
     /// ζ by closed-form least squares on the same peaks.
     pub least_squares: f64,
-    /// |ζ − ζ of least squares| over that, in percent: how well the method solved the problem that it was given.
+    /// Relative difference of ζ from least squares, in percent: a measure of the numerical solution, not of
+    /// its truth.
     pub error_percent: f64,
     /// State in which the fit ended.
     pub reached: Reached,
-    /// Reason for stopping there: a sentence; where it did not converge, with what to do.
+    /// Reason why the fit stopped, as a sentence; without convergence it includes advice.
     pub because: String,
-    /// Training steps taken.
+    /// Number of training steps taken.
     pub steps: u64,
-    /// Law that the method found, where it finds laws.
+    /// Law that the method discovered, if it discovers laws.
     pub equation: Option<String>,
 }
 
-/// Estimates the damping ratio of a free decay by a method of the registry.
+/// Estimates the damping ratio of a free decay with a method of the registry.
 ///
 /// # Errors
 /// [`Error::Config`] for an unknown method or setting, [`Error::Envelope`] for a record without enough peaks,
-/// [`Error::Fit`] where the method gives no estimate.
+/// [`Error::Fit`] if the method gives no estimate.
 ///
 /// ```
 /// use ringdown_lab::{EstimateOptions, Nominal, Simulation, estimate};
@@ -100,8 +102,8 @@ pub fn estimate(record: &Record, method: &str, options: &EstimateOptions) -> Res
     estimate_until(record, method, options, &Cancel::new())
 }
 
-/// Estimates as [`estimate`] does; a request to stop ends the fit after its current step with the best so far, and
-/// [`Estimate::reached`] says [`Reached::Interrupted`].
+/// Estimates like [`estimate`], with a way to stop. A request to stop ends the fit after its current step
+/// with the best estimate so far; [`Estimate::reached`] is then [`Reached::Interrupted`].
 ///
 /// # Errors
 /// As [`estimate`].
@@ -122,7 +124,7 @@ pub fn estimate_until(
     }
 }
 
-/// Estimates the damping ratio of a free decay by an estimator of one's own; `name` is what messages call it.
+/// Estimates the damping ratio of a free decay with a custom estimator; messages refer to it as `name`.
 ///
 /// # Errors
 /// As [`estimate`].
@@ -136,7 +138,7 @@ pub fn estimate_with(
         .learned(name, estimator, options, &Cancel::new())
 }
 
-/// The peaks of a record, with least squares on them.
+/// Extracts the peaks of a record.
 ///
 /// # Errors
 /// As [`estimate`].
@@ -155,7 +157,7 @@ pub fn peaks(record: &Record, options: &EstimateOptions) -> Result<Extraction, E
         .extraction)
 }
 
-/// The configuration that the command line would run.
+/// Returns the configuration that the command line would run.
 fn experiment(method: &str, options: &EstimateOptions) -> Result<Experiment, Error> {
     let text = |value: &str| toml::Value::String(value.to_owned()).to_string();
     let cap = options.max_steps.map_or_else(String::new, |cap| format!("max_steps = {cap}\n"));
@@ -170,7 +172,7 @@ fn experiment(method: &str, options: &EstimateOptions) -> Result<Experiment, Err
     Ok(resolve(&document, ESTIMATORS, &classical)?)
 }
 
-/// A record's envelope and least squares on it.
+/// Envelope of a record, and least squares on it.
 struct Prepared {
     extraction: Extraction,
     reference: DecayFit,
@@ -227,13 +229,14 @@ impl Prepared {
         Estimate { steps: fit.steps, ..made }.finite(id, options.seed)
     }
 
-    /// An estimate from a decay rate and its stated error, which takes the scatter of the peaks to be even, brought to the
-    /// scatter of this record.
+    /// Creates an estimate from a decay rate and its stated error. The stated error assumes equal scatter of
+    /// the peaks and is rescaled to the scatter of this record.
     fn estimate(&self, rate: f64, stated: Option<Uncertainty>, stop: Stop) -> Estimate {
         let envelope = &self.extraction.envelope;
         let factor = self.reference.scatter_factor;
+        let damping_ratio = envelope.damping_ratio(rate);
         Estimate {
-            damping_ratio: envelope.damping_ratio(rate),
+            damping_ratio,
             damping_ratio_std_error: stated
                 .map(|own| envelope.damping_ratio_error(rate, factor * own.std_error)),
             decay_rate: rate,
@@ -242,7 +245,7 @@ impl Prepared {
             omega_rad_s: envelope.omega_rad_s(),
             peaks: envelope.len(),
             least_squares: self.reference.zeta,
-            error_percent: scoring::error_percent(rate, self.reference.decay_rate),
+            error_percent: scoring::error_percent(damping_ratio, self.reference.zeta),
             reached: stop.reached,
             because: stop.because,
             steps: 0,

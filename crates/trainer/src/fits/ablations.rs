@@ -1,4 +1,4 @@
-//! What a method's learned part contributed: its fit without it.
+//! Ablations: fits without a method's learned part, which measure its contribution.
 
 use super::method::{Method, Request};
 use envelope::Envelope;
@@ -7,7 +7,7 @@ use oracle::linfa_decay_rate;
 use results::{AblationRow, Failure, Family, MethodEstimate, MethodOutcome, MethodRow};
 use std::time::Instant;
 
-/// The first seed's fit without each part that can be taken away; empty for a method that learns nothing.
+/// Fits the first seed without each part that can be removed; empty for a method that learns nothing.
 pub(crate) fn ablations(
     method: &Method,
     envelope: &Envelope,
@@ -18,8 +18,10 @@ pub(crate) fn ablations(
     if !method.has_ablations() {
         return Vec::new();
     }
-    // Trained once, where the training sees no envelope.
+    // Trained only once if the training does not depend on the envelope.
     let trained = method.pretrained_quietly(seed, request);
+    let error_percent =
+        |rate: &f64| scoring::error_percent(envelope.damping_ratio(*rate), envelope.damping_ratio(oracle));
     let row = |ablation: Ablation| {
         let found = match &trained {
             _ if request.cancel.is_requested() => Err(Failure::NotBegun),
@@ -28,7 +30,7 @@ pub(crate) fn ablations(
             }
             Err(error) => Err(Failure::of(error)),
         };
-        let error = found.as_ref().map(|rate| scoring::error_percent(*rate, oracle));
+        let error = found.as_ref().map(error_percent);
         AblationRow {
             ablation,
             error_percent: error.ok().filter(|error| error.is_finite()),
@@ -38,16 +40,17 @@ pub(crate) fn ablations(
     Ablation::ALL.map(row).into()
 }
 
-/// The same line by linfa-linear on linfa's data set.
+/// Fits the same line with linfa-linear on linfa's data set.
 pub(crate) fn linfa(envelope: &Envelope, oracle: f64, tolerance_percent: f64) -> MethodRow {
     let start = Instant::now();
     let outcome = match linfa_decay_rate(envelope) {
         Err(error) => MethodOutcome::Failed { reason: Failure::of(&error) },
         Ok((decay_rate, _)) => {
-            let error_percent = scoring::error_percent(decay_rate, oracle);
+            let zeta = envelope.damping_ratio(decay_rate);
+            let error_percent = scoring::error_percent(zeta, envelope.damping_ratio(oracle));
             MethodOutcome::Estimate(MethodEstimate {
                 decay_rate,
-                zeta: envelope.damping_ratio(decay_rate),
+                zeta,
                 zeta_std_error: None,
                 error_percent,
                 median_error_percent: error_percent,

@@ -1,4 +1,4 @@
-//! One method on one seed. Nothing here knows what the oracle found.
+//! Fit of one method on one seed, made without knowledge of the oracle's result.
 
 use crate::error::TrainerError;
 use crate::fits::method::{Method, Request};
@@ -10,7 +10,7 @@ use estimator::{Cancel, Estimate, Reached};
 use results::{SeedRow, TraceRow};
 use serde::{Deserialize, Serialize};
 
-/// One seed's fit.
+/// Fit of one seed.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct SeedFit {
     pub(crate) seed: u64,
@@ -19,19 +19,20 @@ pub(crate) struct SeedFit {
     pub(crate) seconds: f64,
 }
 
-/// What a fit needs besides the method and the seed.
+/// Inputs of a fit besides the method and the seed.
 pub(crate) struct FitSetting<'a> {
     pub(crate) envelope: &'a Envelope,
     pub(crate) request: Request<'a>,
     pub(crate) progress: &'a Progress,
-    /// Where finished fits and the state of unfinished ones are kept.
+    /// Ledger in which finished fits and the state of unfinished ones are stored.
     pub(crate) ledger: Option<&'a Ledger>,
-    /// Steps of its trace after which a fit is stopped, to be gone on with later, and the request above that one.
+    /// Number of steps of its trace after which a fit pauses, to be resumed later, and the parent of the
+    /// pause's own request to stop.
     pub(crate) pause: Option<(u64, &'static Cancel)>,
 }
 
 impl FitSetting<'_> {
-    /// Fits and times; goes on with a fit that was kept, finished or not.
+    /// Fits and measures the duration; continues from a stored fit, finished or not.
     pub(crate) fn fit(&self, method: &Method, seed: u64) -> Result<SeedFit, TrainerError> {
         let name = format!("{} seed {seed}", method.id());
         if let Some(done) = self.ledger.map(|ledger| ledger.finished(&name)).transpose()?.flatten() {
@@ -55,19 +56,20 @@ impl FitSetting<'_> {
 }
 
 impl SeedFit {
-    /// Whether it was stopped before its end.
+    /// Returns `true` if the fit was stopped before its end.
     pub(crate) fn is_interrupted(&self) -> bool {
         self.estimate.stop.reached == Reached::Interrupted
     }
 
-    /// The fit as a row, beside the oracle's decay rate.
+    /// Returns the fit as a row, with its error against the oracle's decay rate.
     pub(crate) fn row(&self, envelope: &Envelope, oracle: f64) -> SeedRow {
         let rate = self.estimate.decay_rate;
+        let zeta = envelope.damping_ratio(rate);
         SeedRow {
             seed: self.seed,
             decay_rate: rate,
-            zeta: envelope.damping_ratio(rate),
-            error_percent: scoring::error_percent(rate, oracle),
+            zeta,
+            error_percent: scoring::error_percent(zeta, envelope.damping_ratio(oracle)),
             reached: self.estimate.stop.reached,
             steps: self.estimate.steps,
             seconds: self.seconds,
@@ -75,7 +77,7 @@ impl SeedFit {
     }
 }
 
-/// The seeds of an experiment.
+/// Returns the seeds of an experiment.
 pub(crate) fn seeds(first: u64, count: u64) -> Result<std::ops::Range<u64>, TrainerError> {
     let end = first.checked_add(count).ok_or(TrainerError::TooManySeeds { seed: first })?;
     Ok(first..end)
