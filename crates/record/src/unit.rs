@@ -1,4 +1,4 @@
-//! Units that record files use, and their way to SI.
+//! Units of record files and their conversion to SI.
 
 use serde::{Deserialize, Serialize};
 
@@ -40,21 +40,21 @@ pub enum Unit {
     KilogramForceCentimeter,
 }
 
-/// Dimension of a quantity: what an observed column can be and what an input is.
+/// Dimension of a quantity: decides if a column can be observed or be an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Dimension {
     /// An angle or one of its derivatives.
     Angle,
     /// A length or one of its derivatives.
     Length,
-    /// A voltage, which stands for a displacement or drives a system.
+    /// A voltage, which represents a displacement or drives a system.
     Voltage,
-    /// A torque, a force or a current: never observed, only an input.
+    /// A torque, a force or a current: only an input, never observed.
     Drive,
 }
 
-/// One unit: symbol, factor to SI, SI symbol, dimension, order of the derivative, other spellings in lower case
-/// without blanks.
+/// Row of one unit: symbol, factor to SI, SI symbol, dimension, order of the derivative, other spellings in
+/// lower case without blanks.
 type Row = (Unit, &'static str, f64, &'static str, Dimension, usize, &'static [&'static str]);
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -64,11 +64,11 @@ const GRAVITY: f64 = 9.806_65;
 
 use Dimension::{Angle, Drive, Length, Voltage};
 
-/// Every unit; those up to `g` can be observed.
+/// All units. Those up to `g`, and `mV`, can be observed.
 #[rustfmt::skip]
 const TABLE: &[Row] = &[
     (Unit::Radian, "rad", 1.0, "rad", Angle, 0, &["radian", "radians"]),
-    (Unit::Degree, "deg", DEGREE, "rad", Angle, 0, &["degree", "degrees", "°", "grad"]),
+    (Unit::Degree, "deg", DEGREE, "rad", Angle, 0, &["degree", "degrees", "°"]),
     (Unit::Milliradian, "mrad", 1e-3, "rad", Angle, 0, &["milliradian", "milliradians"]),
     (Unit::Turn, "turn", TURN, "rad", Angle, 0, &["turns", "rev", "revs", "revolutions"]),
     (Unit::Meter, "m", 1.0, "m", Length, 0, &["meter", "meters", "metre", "metres"]),
@@ -101,24 +101,24 @@ const TABLE: &[Row] = &[
 ];
 
 impl Unit {
-    /// Symbol of every unit that can be observed, as configurations write it.
+    /// Symbols of all units that can be observed, as configurations write them.
     pub const NAMES: &'static [&'static str] = &[
         "rad", "deg", "mrad", "turn", "m", "cm", "mm", "um", "in", "V", "rad/s", "deg/s", "rpm", "m/s",
         "cm/s", "mm/s", "rad/s^2", "deg/s^2", "m/s^2", "g", "mV",
     ];
 
-    /// Symbol of every unit that an input can have, as configurations write it.
+    /// Symbols of all units that an input can have, as configurations write them.
     pub const INPUT_NAMES: &'static [&'static str] = &[
         "N m", "mN m", "kgf m", "kgf cm", "N", "mN", "kN", "kgf", "V", "mV", "A", "mA", "rad", "deg", "mrad",
         "turn", "m", "cm", "mm", "um", "in", "rad/s", "deg/s", "rpm", "m/s", "cm/s", "mm/s",
     ];
 
-    /// The unit with a symbol or another spelling, such as `deg`, `degrees` or `°`.
+    /// Returns the unit with a symbol or another spelling, such as `deg`, `degrees` or `°`.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let text: String = text.chars().filter(|sign| !sign.is_whitespace()).collect();
         let lower = text.to_lowercase();
-        // Case tells mN from MN and nothing else that a log holds.
+        // Case distinguishes mN from MN, and nothing else that occurs in logs.
         let row = TABLE.iter().find(|row| row.1.replace(' ', "") == text);
         row.or_else(|| {
             TABLE
@@ -129,23 +129,23 @@ impl Unit {
     }
 
     fn row(self) -> &'static Row {
-        // The first row is radian; every unit has a row, which a test holds.
+        // The fallback is never used: every unit has a row, which a test checks.
         TABLE.iter().find(|row| row.0 == self).unwrap_or(&TABLE_FIRST)
     }
 
-    /// Symbol as configurations write it.
+    /// Returns the symbol used in configurations.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         self.row().1
     }
 
-    /// Factor from this unit to the SI unit of [`Unit::si`].
+    /// Returns the factor from this unit to the SI unit of [`Unit::si`].
     #[must_use]
     pub fn to_si(self) -> f64 {
         self.row().2
     }
 
-    /// Symbol of the SI unit that values are kept in.
+    /// Returns the symbol of the SI unit in which values are stored.
     #[must_use]
     pub fn si(self) -> &'static str {
         self.row().3
@@ -155,7 +155,7 @@ impl Unit {
         self.row().4
     }
 
-    /// Order of the time derivative: 0 for positions, 1 for velocities, 2 for accelerations.
+    /// Returns the order of the time derivative: 0 for positions, 1 for velocities, 2 for accelerations.
     pub(crate) fn order(self) -> usize {
         self.row().5
     }
@@ -194,16 +194,16 @@ pub enum TimeUnit {
     /// Nanosecond.
     #[serde(rename = "ns")]
     Nanosecond,
-    /// Dates and times of ISO 8601, or times of the day as `HH:MM:SS.mmm`.
+    /// Dates and times of ISO 8601, or times of day as `HH:MM:SS.mmm`.
     #[serde(rename = "iso")]
     Iso,
 }
 
 impl TimeUnit {
-    /// Every unit's name as configurations write it.
+    /// Names of all units of time in configurations.
     pub const NAMES: &'static [&'static str] = &["s", "ms", "us", "ns", "iso"];
 
-    /// Name as configurations write it.
+    /// Returns the name used in configurations.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -215,7 +215,7 @@ impl TimeUnit {
         }
     }
 
-    /// The unit with a name or another spelling, such as `ms`, `msec` or `milliseconds`.
+    /// Returns the unit with a name or another spelling, such as `ms`, `msec` or `milliseconds`.
     pub(crate) fn parse(text: &str) -> Option<Self> {
         match text.trim().to_lowercase().as_str() {
             "s" | "sec" | "secs" | "second" | "seconds" => Some(Self::Second),
@@ -227,7 +227,7 @@ impl TimeUnit {
         }
     }
 
-    /// Units in a second.
+    /// Returns the number of units in a second.
     pub(crate) fn per_second(self) -> f64 {
         match self {
             Self::Second | Self::Iso => 1.0,
@@ -237,7 +237,7 @@ impl TimeUnit {
         }
     }
 
-    /// Stamp in seconds. Divides by a whole power of ten, which rounds once; multiplying by `1e-3`
+    /// Converts a stamp to seconds. Divides by a whole power of ten, which rounds once; multiplying by `1e-3`
     /// would round twice.
     #[must_use]
     pub fn to_seconds(self, stamp: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Dynamics learned from records, judged on records never seen.
+//! Learning of dynamics from records, scored on records that were not used for training.
 
 use crate::error::Error;
 use crate::nominal::Nominal;
@@ -19,20 +19,21 @@ use workflow::learning::{
     Method, Ready, ablation_rows, check_record, described, method_of, methods, row, sort, trajectory, tried,
 };
 
-/// Options of learning, with the defaults of the command line.
+/// Options of a learning run, with the defaults of the command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearnOptions {
-    /// Names of the learners; `None` for all there are.
+    /// Names of the learners; `None` for all.
     pub learners: Option<Vec<String>>,
-    /// Names of the baselines; `None` for all there are.
+    /// Names of the baselines; `None` for all.
     pub baselines: Option<Vec<String>>,
-    /// Name of the data set, which seeds are drawn by.
+    /// Name of the data set; the seeds of the learners depend on it.
     pub name: String,
-    /// Root of every random draw.
+    /// Root seed of all random draws.
     pub seed: u64,
-    /// Cap on the steps of every fit; `None` leaves them to the learners.
+    /// Limit on the steps of every fit; `None` for the learners' own limits.
     pub max_steps: Option<u64>,
-    /// Whether each learner's model is judged twice more: with everything that it learned at zero, and given noise.
+    /// `true` to score each learner's model twice more: with everything it learned at zero, and with noise as
+    /// its input.
     pub ablations: bool,
     /// Keys of the data set as lines of TOML, such as `split = "time"`.
     pub data: String,
@@ -55,21 +56,23 @@ impl Default for LearnOptions {
     }
 }
 
-/// A learner that is not among the workspace's own, by name.
+/// A custom learner with its name.
 pub struct OwnLearner<'a> {
     /// Identifier in results.
     pub id: &'a str,
-    /// The learner.
+    /// The learner itself.
     pub learner: &'a dyn Learner,
 }
 
-/// Learns the dynamics from records by the learners asked for and by `own` ones, and scores each beside the baselines on records
-/// that none has seen, the best first.
+/// Learns the dynamics from records with the requested learners and with the custom ones in `own`. Scores
+/// each of them and the baselines on held-out records, the best first.
 ///
-/// `observe` is called after each step with the method's name; a request to stop ends what is being fitted.
+/// `observe` is called after each step with the name of the method. A request to stop ends the fits in
+/// progress.
 ///
 /// # Errors
-/// [`Error::Config`] for unknown learners or settings, [`Error::Learn`] for records that nothing can be learned from.
+/// [`Error::Config`] for unknown learners or settings, [`Error::Learn`] for records that nothing can be
+/// learned from.
 ///
 /// ```
 /// use ringdown_lab::{LearnOptions, Nominal, Simulation, learn};
@@ -127,7 +130,7 @@ pub fn learn(
     })
 }
 
-/// The configuration that the command line would run.
+/// Returns the configuration that the command line would run.
 fn study(options: &LearnOptions) -> Result<LearnStudy, Error> {
     let text = |value: &str| toml::Value::String(value.to_owned()).to_string();
     let names = |key: &str, names: &Option<Vec<String>>| {
@@ -178,9 +181,9 @@ fn data_set(
     })
 }
 
-/// Origin of the records, as far as one states it.
+/// Returns the origin that all records share, or unstated where they differ.
 fn origin(records: &[Record]) -> Origin {
     let stated = |record: &Record| record.loaded.origin.or(record.loaded.source.statements.origin);
-    // What nobody stated is unstated.
-    records.iter().find_map(stated).unwrap_or_default()
+    // A record that states nothing has the origin "unstated".
+    Origin::shared(records.iter().map(|record| stated(record).unwrap_or_default()))
 }
