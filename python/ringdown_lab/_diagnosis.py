@@ -131,8 +131,8 @@ def diagnose(
     """Diagnoses the gap between a nominal simulator and records of one system.
 
     records: one record or several, as records or as paths. nominal: the simulator, or the path of its ``nominal.toml``.
-    false_alarm: probability with which an effect is named where there is none, 0.001 to 0.2.
-    most_effects: most effects named together, 1 to 5. without: effects that are not considered.
+    false_alarm: false-alarm probability of the search for effects, 0.001 to 0.2.
+    most_effects: largest number of effects in one fitted set, 1 to 5. without: effects that are not considered.
     seed: root of the random draws. threads: how many; the answer does not depend on it.
     progress: called with the name of each stage once that is done; ``print`` will do.
 
