@@ -1,9 +1,9 @@
-//! What the documents say holds.
+//! Tests of the claims in the documents.
 
 use crate::support::{measured, result, root, trainer};
 use std::path::PathBuf;
 
-/// The files with an ending below a folder of the workspace, in the order of their paths.
+/// Returns the files with an ending below a folder of the workspace, sorted by path.
 pub(crate) fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = Vec::new();
     let mut folders = vec![root().join(folder)];
@@ -29,6 +29,38 @@ fn source_files_stay_readable_in_length() {
     }
 }
 
+/// Doc comments begin with a noun or a verb, so that their first word tells what the item is or does.
+#[test]
+fn doc_comments_begin_with_what_the_item_is() {
+    const BEGINNINGS: [&str; 9] =
+        ["What", "Whether", "How", "Where", "Which", "Who", "When", "That which", "Of which"];
+    let docs = |line: &str| {
+        let words = line.trim_start();
+        words.strip_prefix("/// ").or_else(|| words.strip_prefix("//! ")).map(str::to_owned)
+    };
+    let mut seen = 0;
+    let mut found = Vec::new();
+    for path in files("crates", "rs").into_iter().chain(files("tests", "rs")).chain(files("examples", "rs")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut is_first = true;
+        for (place, line) in text.lines().enumerate() {
+            let Some(words) = docs(line) else {
+                is_first = true;
+                continue;
+            };
+            seen += usize::from(is_first);
+            let is_indirect =
+                |beginning: &&str| words.split(' ').zip(beginning.split(' ')).all(|(a, b)| a == b);
+            if is_first && BEGINNINGS.iter().any(|own| is_indirect(own)) {
+                found.push(format!("{}:{}: {words}", path.display(), place + 1));
+            }
+            is_first = false;
+        }
+    }
+    assert!(seen > 5000, "{seen} doc comments");
+    assert!(found.is_empty(), "{} doc comments: {}", found.len(), found.join("\n"));
+}
+
 #[test]
 fn the_help_shows_the_exit_codes_and_examples() {
     let output = trainer(&["--help"]);
@@ -39,7 +71,7 @@ fn the_help_shows_the_exit_codes_and_examples() {
     }
 }
 
-/// Cuts trials down to three short cases, wherever these come from.
+/// Overrides that reduce trials from any configuration to a few short cases.
 pub(crate) const FEW_TRIALS: &[&str] = &[
     "trials.none=1",
     "trials.calibration=0",
@@ -58,13 +90,13 @@ pub(crate) const FEW_TRIALS: &[&str] = &[
     "record.rate_hz=130",
 ];
 
-/// Each one as a user would run it, the study of many problems and trials cut short. The null estimator's misses its
-/// bar by design.
+/// Runs each configuration as a user would, with the study of many problems and the trials cut short. The
+/// null estimator's configuration misses its bar by design.
 #[test]
 fn every_shipped_configuration_runs() {
     for path in files("configs", "toml") {
         if path.ends_with("beyond.toml") {
-            // A record that is absent is no obstacle to it.
+            // The configuration runs even if a record is absent.
             let quick = ["predict.draws=2", "predict.draws_seeded=1", "predict.max_steps=20"];
             let (code, result, _) = result(&[&[path.to_str().unwrap()], &quick[..]].concat());
             assert_eq!(code, 0, "{}: {result}", path.display());
@@ -81,11 +113,11 @@ fn every_shipped_configuration_runs() {
             let mut quick =
                 vec![path.to_str().unwrap(), "learn.max_steps=2", "bayesian.warm_up=2", "bayesian.draws=10"];
             let all = ["learn.toml", "measured.toml", "table.toml"].iter().any(|name| path.ends_with(name));
-            // Each learner has a configuration of its own.
+            // Each learner has its own configuration.
             quick.extend(all.then_some("learn.learners=sindy"));
-            // The repaired simulator takes a diagnosis of each system: `learning::` has one.
+            // The repaired simulator needs a diagnosis of each system: a test in `learning::` has one.
             quick.extend(all.then_some("learn.baselines=persistence,nominal,recalibrated,arx"));
-            // The table's problems are those of the other two.
+            // The problems of the table are those of the other two files.
             quick.extend(path.ends_with("table.toml").then_some("learn.problems=drag-cubic"));
             let (code, result, _) = result(&quick);
             assert_eq!(code, 0, "{}: {result}", path.display());
@@ -95,7 +127,8 @@ fn every_shipped_configuration_runs() {
         if needs.is_some_and(|rest| measured(rest.split('"').next().unwrap()).is_none()) {
             continue;
         }
-        // The battery trains amortized methods to the end, which takes half a minute; after a few steps they miss the bar.
+        // Amortized methods train to the end in the conformance battery, which takes half a minute; after a
+        // few steps they miss the bar.
         let amortized = path.to_str().unwrap().ends_with("-amortized.toml");
         let quick = amortized.then_some("fit.max_steps=10");
         let arguments: Vec<&str> = path.to_str().into_iter().chain(quick).collect();
@@ -105,7 +138,7 @@ fn every_shipped_configuration_runs() {
     }
 }
 
-/// The gate runs the test command of the README, word for word.
+/// The CI gate runs the test command of the README, word for word.
 #[test]
 fn the_gate_runs_the_readmes_test_command() {
     let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
@@ -121,13 +154,13 @@ fn the_gate_runs_the_readmes_test_command() {
     assert!(gate.lines().any(|line| line == test), "`{test}` is not a line of .ci/run");
 }
 
-/// The documents that people read first, with the book's pages.
+/// Returns the main documents and the book's pages.
 fn documents() -> Vec<PathBuf> {
     let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root().join(name));
     top.into_iter().chain(files("book/src", "md")).chain(files("experiments", "md")).collect()
 }
 
-/// The parts of a text between two marks.
+/// Returns the parts of a text between two marks.
 fn between<'a>(text: &'a str, open: &str, close: &str) -> Vec<&'a str> {
     text.split(open).skip(1).filter_map(|rest| rest.split(close).next()).collect()
 }
@@ -178,7 +211,7 @@ fn every_term_of_the_glossary_is_defined_in_a_sentence_and_has_a_dated_source() 
     for row in &rows {
         let [term, means, source] = row[..] else { panic!("{row:?}") };
         assert!(means.ends_with('.') && means.len() > 20, "{term}: {means}");
-        // A year, or the part of a standard.
+        // A year, or the part number of a standard.
         let has_year = source.split(|letter: char| !letter.is_ascii_digit()).any(|number| number.len() >= 4);
         assert!(has_year, "{term}: {source}");
     }
@@ -186,7 +219,8 @@ fn every_term_of_the_glossary_is_defined_in_a_sentence_and_has_a_dated_source() 
     assert!(terms.is_sorted(), "{terms:?}");
 }
 
-/// The words of every command of the documents that begins in one of these ways, lines that go on joined.
+/// Returns the words of every command in the documents with one of these beginnings; continued lines are
+/// joined.
 fn commands(beginning: &str) -> Vec<(PathBuf, Vec<String>)> {
     let mut found = Vec::new();
     for path in documents() {
@@ -244,7 +278,8 @@ fn examples_and_tests_that_the_documents_name_exist() {
     }
 }
 
-/// The lines of the diagnosis that the README and the first hour show, each cut off somewhere, are those of the command now.
+/// The lines of the diagnosis in the README and in the first hour, each of which may be cut off, match the
+/// command's output.
 #[test]
 fn the_diagnosis_that_the_documents_show_is_what_the_command_says() {
     let folder = tempfile::tempdir().unwrap();
