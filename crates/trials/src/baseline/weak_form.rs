@@ -1,10 +1,10 @@
 //! Weak-form sparse identification of the missing term.
 //!
 //! The equation of motion is multiplied by test functions that vanish, with their derivatives, at both ends
-//! of a window. Integration by parts then avoids the second derivative of the record: ∫φ″θ = −∫φ·(c·θ̇ + k·θ
-//! + …). Terms of the library are removed one by one, each time the term whose removal costs least. The
-//! Bayesian information criterion chooses among the laws on this path, and the term whose removal would cost
-//! most is named.
+//! of a window. Integration by parts then avoids the second derivative of the record:
+//! ∫φ″θ = −∫φ·(c·θ̇ + k·θ + …). Terms of the library are removed one by one, each time the term whose removal
+//! costs least. The Bayesian information criterion chooses among the laws on this path, and the term whose
+//! removal would cost most is named.
 //!
 //! # Reference
 //! D. A. Messenger, D. M. Bortz, Multiscale Model. Simul. 19 (2021) 1474–1497.
