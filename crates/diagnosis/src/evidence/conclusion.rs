@@ -1,4 +1,4 @@
-//! What the fits say: a probability for every effect, and the verdict in words.
+//! Conclusions from the fits: a probability for every effect, and the verdict.
 
 use crate::answer::{
     ClassEvidence, EffectClass, EffectProbability, Finding, Interval, Kind, ParameterEstimate, Rivalry,
@@ -6,43 +6,44 @@ use crate::answer::{
 };
 use crate::evidence::context::{Context, Shift};
 use crate::evidence::inclusion::Inclusion;
-use crate::evidence::weights::{DISTINCT_DISTANCE, OFF_BY_CHANCE, Weighed};
+use crate::evidence::weights::{DISTINCT_DISTANCE, OFF_BY_CHANCE, Weighed, acts};
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
 use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
 use crate::model::vocabulary::evidence_class;
 
-/// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and
-/// no calibration.
+/// Probability that a constant torque, and not a wrong nominal rest angle, has shifted the rest position,
+/// where this shift alone explains as much as the whole recalibration.
 const SHIFTED: f64 = 0.9;
 
-/// The same beside named effects, which may move the middle of the swing themselves: of five in three banks of rigs three were
-/// constant torques. One more that is, and one that is not.
+/// The same probability beside named effects, which may shift the middle of the swing themselves. In three
+/// banks of rigs three of five such shifts were constant torques; Laplace's rule adds one success and one
+/// failure.
 const SHIFTED_BESIDE: f64 = 4.0 / 7.0;
 
-/// Probability of an effect that stamps or values show by themselves: all 385 of the training banks were there. One
-/// more that is, and one that is not.
+/// Probability of an effect that time stamps or values show without a fit: all 385 of the training banks were
+/// there; Laplace's rule adds one success and one failure.
 const SHOWN: f64 = 386.0 / 387.0;
 
-/// Probability from which on a class is named: it is likelier there than not.
+/// Probability from which on a class is named: it is more likely present than absent.
 const LIKELY: f64 = 0.5;
 
-/// What is known once everything is fitted.
+/// Results of all stages before the conclusion.
 #[derive(Clone, Copy)]
 pub(crate) struct Parts<'a> {
     pub(crate) work: &'a Context<'a>,
     pub(crate) candidates: &'a [Candidate],
-    /// The set of the named effects.
+    /// Fit of the set of named effects.
     pub(crate) repaired: &'a Fit,
-    /// The torque without a name that stands beside them.
+    /// Position-dependent torque beside them, if one was found.
     pub(crate) unnamed: Option<&'a Unnamed>,
     pub(crate) shares: &'a [(f64, Interval)],
     pub(crate) classes: &'a [EffectClass],
     pub(crate) inclusion: &'a Inclusion<'a>,
-    /// Probability that all that is missing has no name.
+    /// Probability that no effect of the vocabulary explains what is missing.
     pub(crate) nameless: f64,
-    /// Probability that anything is left beside the named effects, however little.
+    /// Probability that anything beyond noise is left beside the named effects, however little.
     pub(crate) left_over: f64,
     pub(crate) calibrated_off: bool,
     pub(crate) shift: Option<Shift>,
@@ -55,7 +56,8 @@ impl Parts<'_> {
         &self.repaired.hypothesis.candidates
     }
 
-    /// Probability that the system has a candidate: that of its class, times its share there.
+    /// Returns the probability that the system has a candidate: its class's probability times its share of
+    /// the class.
     fn probability(&self, candidate: Candidate) -> f64 {
         let id = candidate.evidence_class().id();
         let class = self.classes.iter().find(|class| class.id == id);
@@ -63,32 +65,52 @@ impl Parts<'_> {
         class.map_or(0.0, |class| class.probability * self.inclusion.membership(candidate))
     }
 
-    /// Probability that coefficients are off: their significance was tested at 1 %.
+    /// Returns the probability that coefficients are off, whose significance was tested at 1 %.
     fn of_calibration(&self) -> f64 {
         if self.calibrated_off { 1.0 - OFF_BY_CHANCE } else { OFF_BY_CHANCE }
     }
 
-    /// Probability that the system has none of the classes, and nothing without a name.
+    /// Returns the probability that no class of effects acts.
+    fn none_of_classes(&self) -> f64 {
+        self.classes.iter().map(|class| 1.0 - class.probability).product()
+    }
+
+    /// Returns the probability that the simulator lacks anything, from the evidence of the best set over the
+    /// recalibrated simulator.
+    fn incomplete(&self) -> f64 {
+        // The set without effects is among the sets and has no evidence over itself.
+        acts(self.inclusion.sets.weighed.first().map_or(0.0, |best| best.evidence))
+    }
+
+    /// Returns the probability that the simulator lacks something outside the vocabulary: something is left
+    /// beside the named effects, or something is missing although no class acts.
+    fn unlisted(&self) -> f64 {
+        let left = self.nameless.max(self.left_over);
+        left + (1.0 - left) * self.none_of_classes() * self.incomplete()
+    }
+
+    /// Returns the probability that the simulator lacks nothing.
     fn bare(&self) -> f64 {
-        let none: f64 = self.classes.iter().map(|class| 1.0 - class.probability).product();
-        none * (1.0 - self.nameless)
+        self.none_of_classes() * (1.0 - self.nameless) * (1.0 - self.incomplete())
     }
 }
 
-/// Probability from which on one of two classes acts for certain, though it can't be told which.
+/// Probability from which on one of two interchangeable classes is certain to act.
 const CERTAIN: f64 = 0.9;
 
-/// Whether a class is likelier there than not, or the better one of two of which one certainly is.
+/// Returns `true` if a class is more likely present than absent, or is the better one of two interchangeable
+/// classes of which one certainly acts.
 fn is_likely(class: &EffectClass) -> bool {
     class.probability >= LIKELY || class.either.is_some_and(|either| either >= CERTAIN)
 }
 
-/// Classes that are likelier there than not.
+/// Returns the classes that are more likely present than absent.
 pub(crate) fn likely(classes: &[EffectClass]) -> Vec<&'static str> {
     classes.iter().filter(|class| is_likely(class)).map(|class| class.id).collect()
 }
 
-/// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
+/// Returns the probability of every effect that may act, and of `none`, `calibration` and `unknown`, most
+/// probable first.
 pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     let mut list = Vec::from(verdicts(parts));
     list.extend(parts.shift.map(|shift| shifted(parts, shift)));
@@ -109,12 +131,12 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     list
 }
 
-/// A row without coefficients and without a share of the gap.
+/// Returns a row without coefficients and without a share of the gap.
 fn plain(id: &'static str, probability: f64) -> EffectProbability {
     EffectProbability { id, probability, parameters: Vec::new(), gap_share: None }
 }
 
-/// The rows of `unknown`, `none` and `calibration`.
+/// Returns the rows of `unknown`, `none` and `calibration`.
 fn verdicts(parts: &Parts<'_>) -> [EffectProbability; 3] {
     let bare = parts.bare();
     let of_shift = if parts.shift.is_some() && parts.named().is_empty() { SHIFTED } else { 0.0 };
@@ -122,17 +144,18 @@ fn verdicts(parts: &Parts<'_>) -> [EffectProbability; 3] {
     let coefficients = |torque: &Unnamed| parameters(parts.work, &torque.followed, Candidate::UNNAMED);
     [
         EffectProbability {
-            // Without an unnamed torque there are no coefficients of it.
+            // Without a position-dependent torque there are no coefficients.
             parameters: parts.unnamed.map(coefficients).unwrap_or_default(),
             gap_share: parts.unnamed.map(|torque| torque.share),
-            ..plain("unknown", parts.nameless.max(parts.left_over))
+            ..plain("unknown", parts.unlisted())
         },
         plain("none", bare * (1.0 - of_calibration)),
         plain("calibration", bare * of_calibration * (1.0 - of_shift)),
     ]
 }
 
-/// The row of a shifted rest angle. It was looked for beside the named effects, or beside none.
+/// Returns the row of a constant torque that was found as a shift of the rest angle, beside the named effects
+/// or alone.
 fn shifted(parts: &Parts<'_>, shift: Shift) -> EffectProbability {
     let bare = parts.bare();
     let probability =
@@ -149,10 +172,11 @@ fn shifted(parts: &Parts<'_>, shift: Shift) -> EffectProbability {
     }
 }
 
-/// The row of a candidate: of the set of the named effects where it is one of them, else of the best set that has it.
+/// Returns the row of a candidate, from the set of named effects if that contains it, else from the best set
+/// that does.
 fn fitted(parts: &Parts<'_>, candidate: Candidate) -> EffectProbability {
     let place = parts.named().iter().position(|own| *own == candidate);
-    // Named effects share what the torque without a name leaves them.
+    // Named effects share what the position-dependent torque leaves.
     let rest = 1.0 - parts.unnamed.map_or(0.0, |torque| torque.share.value);
     let of_named = |share: Interval| Interval {
         value: rest * share.value,
@@ -165,13 +189,14 @@ fn fitted(parts: &Parts<'_>, candidate: Candidate) -> EffectProbability {
     EffectProbability {
         id: candidate.id(),
         probability: parts.probability(candidate),
-        // A candidate of no fitted set has no coefficients.
+        // A candidate in no fitted set has no coefficients.
         parameters: source.map(|fit| parameters(parts.work, fit, candidate)).unwrap_or_default(),
         gap_share: place.and_then(|place| parts.shares.get(place)).map(|share| of_named(share.1)),
     }
 }
 
-/// The classes with their shares of the gap, and those that stamps, values and the rest angle show, the most probable first.
+/// Returns the classes with their shares of the gap, and those that time stamps, values and the rest angle
+/// show, most probable first.
 pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<EffectClass> {
     let mut classes = parts.classes.to_vec();
     for class in &mut classes {
@@ -194,7 +219,7 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
         let probability = effects.iter().find(|row| row.id == id).map_or(SHOWN, |row| row.probability);
         match classes.iter_mut().find(|own| own.id == class) {
             Some(own) => {
-                // Fitted kinds are there with the probability that the class had by them alone.
+                // The fitted kinds had the class's probability to themselves before.
                 for kind in &mut own.kinds {
                     kind.share *= own.probability;
                 }
@@ -226,7 +251,7 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
     classes
 }
 
-/// Status, names, classes and confidence.
+/// Returns status, names, indistinguishable effects and confidence.
 pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     let mut order: Vec<(Candidate, f64)> =
         parts.named().iter().copied().zip(parts.shares.iter().map(|share| share.0)).collect();
@@ -248,7 +273,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
             equivalent.push(class);
         }
     }
-    // Classes that are likely, and that the best set of these does not have.
+    // Likely classes that the best set of likely classes lacks.
     for class in parts.classes.iter().filter(|class| is_likely(class)) {
         let is_named = parts.named().iter().any(|own| own.counts() && own.evidence_class().id() == class.id);
         effects.extend(class.kinds.first().filter(|_| !is_named).map(|kind| kind.id));
@@ -273,7 +298,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     Verdict { status, effects, confidence: confidence(parts, status), left_over: parts.left_over, equivalent }
 }
 
-/// Probability of a status with exactly these effects: every named class is there with the named kinds, no other is.
+/// Returns the probability that every named class acts, with the named kinds, and no other class does.
 fn confidence(parts: &Parts<'_>, status: Status) -> f64 {
     let is_named =
         |class: &&EffectClass| parts.named().iter().any(|own| own.evidence_class().id() == class.id);

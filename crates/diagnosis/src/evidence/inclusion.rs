@@ -115,22 +115,16 @@ impl<'a> Inclusion<'a> {
             .filter(|class| *class != EvidenceClass::Unnamed)
             .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
-        let remaining = self.remaining();
         let most = rows.iter().map(|row| row.evidence.replacement).fold(0.0, f64::max);
         for row in &mut rows {
-            let shown = Shown {
-                evidence: &row.evidence,
-                ratio: row.error_without / row.error_with,
-                leads: row.evidence.replacement > 0.0 && row.evidence.replacement >= most,
-                remaining,
-            };
+            let shown = Shown { evidence: &row.evidence, ratio: row.error_without / row.error_with, most };
             row.probability = probability(&shown, self.sets.left_over);
         }
         let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
         for (place, (row, class)) in rows.iter_mut().zip(&ids).enumerate() {
             for (other, beside) in ids.iter().enumerate().filter(|(other, _)| *other != place) {
                 let (Some(own), Some(rival)) = (known.get(place), known.get(other)) else { continue };
-                let Some(either) = self.either(*class, *beside) else { continue };
+                let Some(either) = self.either(*class, *beside, most) else { continue };
                 row.probability = row.probability.max(either * own / (own + rival));
                 let is_better = own > rival || own == rival && place < other;
                 if is_better {
@@ -141,17 +135,10 @@ impl<'a> Inclusion<'a> {
         rows
     }
 
-    /// Returns the held-out error of the best set over that of the recalibrated simulator; NaN if either is
-    /// missing.
-    fn remaining(&self) -> f64 {
-        let bare = self.sets.weighed.iter().position(|w| w.fit.hypothesis.candidates.is_empty());
-        let bare = bare.and_then(|place| self.sets.left.get(place));
-        self.sets.best().zip(bare).map_or(f64::NAN, |((_, error), bare)| error / bare.error)
-    }
-
     /// Returns the probability that at least one of two classes acts, if they can replace each other: the
-    /// best set with either class lacks the other. `None` otherwise.
-    fn either(&self, one: EvidenceClass, other: EvidenceClass) -> Option<f64> {
+    /// best set with either class lacks the other. `None` otherwise. `most` is the largest evidence of a
+    /// class.
+    fn either(&self, one: EvidenceClass, other: EvidenceClass, most: f64) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| fit.hypothesis.holds(one))?;
         let with_other = place(&|fit| fit.hypothesis.holds(other))?;
@@ -167,12 +154,7 @@ impl<'a> Inclusion<'a> {
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let evidence = ClassEvidence { replacement, half_swings: None };
-        let shown = Shown {
-            evidence: &evidence,
-            ratio: error(neither) / error(best),
-            leads: false,
-            remaining: self.remaining(),
-        };
+        let shown = Shown { evidence: &evidence, ratio: error(neither) / error(best), most };
         Some(probability(&shown, self.sets.left_over))
     }
 
