@@ -51,7 +51,7 @@ fn doc_comments_begin_with_what_the_item_is() {
             seen += usize::from(is_first);
             let is_indirect =
                 |beginning: &&str| words.split(' ').zip(beginning.split(' ')).all(|(a, b)| a == b);
-            if is_first && BEGINNINGS.iter().any(|own| is_indirect(own)) {
+            if is_first && BEGINNINGS.iter().any(is_indirect) {
                 found.push(format!("{}:{}: {words}", path.display(), place + 1));
             }
             is_first = false;

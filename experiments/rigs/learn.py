@@ -16,11 +16,8 @@ from pathlib import Path
 import numpy
 import score
 
-# As in `probability.rs`: part of the recalibrated simulator's error from which on an explanation leaves much.
-MUCH = 1 / 6
 PRIOR_DEVIATION = 2.0
-FEATURES = {"LEARNED": ["constant", "replacement", "half_swings", "error", "leads", "remaining"],
-            "CLEAN": ["constant", "replacement"]}
+FEATURES = ["constant", "replacement", "half_swings", "error", "leads"]
 
 
 def log1p_positive(nats):
@@ -34,7 +31,7 @@ def observations(answers, truths):
         if not case.answered:
             continue
         answer = json.loads((answers / case.id / "diagnosis.json").read_text())
-        gap, left = answer["gap"], answer["verdict"].get("left_over")
+        left = answer["verdict"].get("left_over")
         fitted = [row for row in answer["classes"] if row["error_with"] and row["error_without"]]
         most = max((row["evidence"]["replacement"] for row in fitted), default=0.0)
         for row in fitted:
@@ -42,10 +39,8 @@ def observations(answers, truths):
                 continue
             evidence = row["evidence"]
             nats, swings = evidence["replacement"], evidence.get("half_swings")
-            witnessed = swings is not None and swings > 0
-            remaining = 0.0 if witnessed else max(0.0, math.log(gap["repaired"] / gap["recalibrated"] / MUCH))
             features = [1.0, log1p_positive(nats), log1p_positive(swings), math.log(row["error_without"] / row["error_with"]),
-                        float(0 < nats and nats >= most), remaining]
+                        float(0 < nats and nats >= most)]
             rows.append((features, float(row["id"] in case.present), 1.0 if left is None else left, row["probability"], case.kind))
     return rows
 
@@ -77,14 +72,13 @@ def main():
     unlisted = numpy.array([kind.endswith("unlisted") for *_, kind in rows])
     weights = numpy.where(unlisted, arguments.unlisted_weight, 1.0)
     learned = {}
-    for name, share in (("LEARNED", left), ("CLEAN", 1 - left)):
-        names = FEATURES[name]
-        coefficients, errors = fitted(features[:, : len(names)], outcomes, weights * share)
-        learned[name] = 1 / (1 + numpy.exp(-features[:, : len(names)] @ coefficients))
+    for name, share in (("DOUBTED", left), ("CLEAN", 1 - left)):
+        coefficients, errors = fitted(features, outcomes, weights * share)
+        learned[name] = 1 / (1 + numpy.exp(-features @ coefficients))
         print(f"{name}: {sum(weights * share):.0f} classes by weight")
-        for feature, value, error in zip(names, coefficients, errors):
+        for feature, value, error in zip(FEATURES, coefficients, errors):
             print(f"    {feature:12s} {value:6.2f} ± {error:.2f}")
-    probabilities = left * learned["LEARNED"] + (1 - left) * learned["CLEAN"]
+    probabilities = left * learned["DOUBTED"] + (1 - left) * learned["CLEAN"]
     print("calibration error of classes, as stated and as learned:")
     several = numpy.array([kind in ("composite", "rough") for *_, kind in rows])
     for label, chosen in (("several effects", several), ("all", numpy.ones(len(rows), bool))):
