@@ -226,7 +226,7 @@ fn networks_that_no_memory_holds() {
             message.contains("`estimator.hidden` is [256, 256, 256, 256]; expected fewer or"),
             "{message}"
         );
-        assert!(message.contains("GiB of memory, of which there may be 16"), "{message}");
+        assert!(message.contains("GiB of memory; the limit is 16 GiB"), "{message}");
     }
     let output = trainer(&["check", "configs/pinn.toml", "estimator.hidden=[256,256,256,256]"]);
     assert_eq!(output.status.code(), Some(2));

@@ -80,8 +80,7 @@ fn the_shipped_record_gives_its_true_frequency_and_damping_beside_the_answer() {
     assert!(number(&result, "/truth/zeta_off_std_errors").abs() < 2.0, "{}", result["truth"]);
     let said = result["disagreement"].as_str().unwrap();
     assert!(
-        said.contains("paper pipeline on the host clock puts ω 3.7")
-            && said.contains("Believe the one in force")
+        said.contains("paper pipeline on the host clock puts ω 3.7") && said.contains("Use the one in force")
     );
 }
 

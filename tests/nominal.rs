@@ -87,7 +87,8 @@ fn a_spring_where_there_is_none_is_not_determined() {
     assert_eq!(found["calibration"]["damping"]["determined"], true);
     assert_eq!(found["calibration"]["stiffness"]["determined"], false);
     // A negligible stiffness keeps its nominal value; the rest angle beside it preloads the drive.
-    let said = "a number for stiffness that these data determine; the one here is the nominal simulator's";
+    let said = "a value of stiffness that these data determine; the value in this file is the nominal \
+                simulator's";
     for (name, number) in [
         ("repaired.toml", "stiffness = 0.5 "),
         ("repaired.mjcf.xml", "stiffness=\"0.5\""),

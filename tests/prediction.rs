@@ -159,7 +159,7 @@ fn measured_records_are_scored_without_a_test_of_their_one_ending() {
         let scores = method(&result, id, "ols");
         assert!(scores["covers_projected_slope"].is_null());
         let verdict = row.pointer("/outcome/studied/verdict").unwrap().to_string();
-        let ending = "which no test can tell from chance";
+        let ending = "which no test can distinguish from chance";
         assert!(verdict.contains(ending) || verdict.contains("no method predicts"), "{verdict}");
         assert!(scores["extrapolation"]["against_exponential"].is_null());
         // The best exponential has an error of more than half of the amplitude at the end of both.

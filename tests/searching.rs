@@ -208,5 +208,5 @@ fn what_a_search_cannot_do_is_said_with_the_remedy() {
     let asked = ["--search", "random", range, "--trials", "2", "--minimize", "test.free_run_rmse"];
     let output = sweep(&["sweep", &config], &out, &asked);
     let shown = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(code(&output) == 0 && shown.contains("choice was made on the test part"), "{shown}");
+    assert!(code(&output) == 0 && shown.contains("The best trial was chosen on the test part"), "{shown}");
 }

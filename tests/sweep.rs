@@ -357,7 +357,8 @@ fn a_run_killed_within_a_sweep_goes_on_in_its_folder() {
     std::fs::write(&damaged, &whole_file[..whole_file.len() / 2]).unwrap();
     let output = sweep(&arguments, &out, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
-    let says = format!("runs/{} cannot be gone on with, so the run begins again beside it: ", names[2]);
+    let says =
+        format!("runs/{} cannot be resumed, so the run starts again in a new folder beside it: ", names[2]);
     assert!(said(&output).contains(&says), "{}", said(&output));
     assert_eq!(results(&out), results(&whole));
     let mut found: Vec<String> = std::fs::read_dir(&runs)

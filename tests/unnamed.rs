@@ -46,7 +46,9 @@ fn it_is_unknown_described_in_words_and_part_of_the_repaired_simulator() {
         assert!((number(row, "/parameters/torque/value") / 0.8 - 1.0).abs() < 0.05, "{row}");
         assert!(number(&found, "/gap/ratio_to_floor") < 1.05);
         let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
-        assert!(report.contains("a torque along the position") && report.contains("and what has no name"));
+        assert!(
+            report.contains("a position-dependent torque") && report.contains("and an unexplained torque")
+        );
         let repaired = folder.path().join("repaired.toml");
         let again = trainer(&["simulate", repaired.to_str().unwrap(), "--quiet", "--out", &at("again")]);
         assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));

@@ -12,27 +12,28 @@ const PAGES: [(&str, Class, &str, &str); 5] = [
         "dissipative",
         Class::Dissipative,
         "Effects that take energy",
-        "The amplitude tells them apart: each has its own law of loss per half swing.",
+        "The decay of the amplitude distinguishes them: each has its own law of loss per half swing.",
     ),
     (
         "conservative",
         Class::Conservative,
         "Effects that store energy",
-        "The frequency tells them apart: each makes it, and the middle of the swing, depend on the amplitude in its own way.",
+        "The frequency distinguishes them: each makes the frequency, and the center of the swing, depend on \
+         the amplitude in its own way.",
     ),
     (
         "time-dependent",
         Class::TimeDependent,
         "Effects that depend on time",
-        "They change with time or come in with the input, whatever the amplitude.",
+        "They depend on the time or on the input, not on the amplitude.",
     ),
     (
         "sensor",
         Class::Sensor,
         "Effects of the sensor",
-        "The motion is as it was; what the file says of it is not.",
+        "The motion is unchanged, but the file shows it wrongly.",
     ),
-    ("clock", Class::Clock, "Effects of the clock", "The values are right, the times are not."),
+    ("clock", Class::Clock, "Effects of the clock", "The values are right, but the times are wrong."),
 ];
 
 /// Every file of the gallery with its content.

@@ -170,7 +170,7 @@ def _column(record: str, name: str, numbers: ArrayLike) -> NDArray[np.float64]:
     try:
         column = np.asarray(numbers, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise RecordError(f"{record}: {name} are no numbers: {error}; expected a column of float64") from None
+        raise RecordError(f"{record}: {name} are not numbers: {error}; expected a column of float64") from None
     if column.ndim != 1:
         raise RecordError(f"{record}: {name} has shape {column.shape}; expected one dimension, a number for each sample")
     return np.ascontiguousarray(column)

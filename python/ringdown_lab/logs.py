@@ -45,7 +45,7 @@ def csv_of(frame: Any) -> bytes:
         frame = frame.to_pydict()
     if not isinstance(frame, Mapping):
         kind = type(frame).__name__
-        raise RecordError(f"{kind} is no frame; expected one of pandas, polars or Arrow, or a mapping from names to columns")
+        raise RecordError(f"{kind} is not a data frame of pandas, polars or Arrow, or a mapping from names to columns")
     columns = {str(name): np.asarray(column).ravel() for name, column in frame.items()}
     lengths = {name: column.size for name, column in columns.items()}
     if len(set(lengths.values())) > 1:

@@ -17,7 +17,7 @@ create_exception!(
     ringdown_lab,
     DiagnosisError,
     RingdownError,
-    "Records that say nothing of the nominal simulator."
+    "Records from which the nominal simulator cannot be diagnosed."
 );
 create_exception!(ringdown_lab, FitError, RingdownError, "A method that gave no estimate or no model.");
 

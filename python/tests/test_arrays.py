@@ -81,7 +81,7 @@ def test_units_are_brought_to_si_when_the_record_is_used() -> None:
         (np.arange(10.0), np.zeros(9), "9"),
         (np.arange(10.0), np.full(10, np.nan), "values"),
         (np.r_[0:5, 3:8].astype(float), np.zeros(10), "3"),
-        (np.arange(10.0), ["a"] * 10, "values are no numbers"),
+        (np.arange(10.0), ["a"] * 10, "values are not numbers"),
     ],
 )
 def test_wrong_arrays_raise_a_record_error(time: object, values: object, message: str) -> None:

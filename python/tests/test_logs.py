@@ -28,7 +28,7 @@ def test_a_mapping_is_read_by_its_names() -> None:
     assert "angle_rad" in record.reading
     with pytest.raises(rd.RecordError, match="different lengths"):
         rd.Record.from_frame({"time_s": TIME, "angle_rad": ANGLE[1:]})
-    with pytest.raises(rd.RecordError, match="int is no frame"):
+    with pytest.raises(rd.RecordError, match="int is not a data frame"):
         rd.Record.from_frame(3)
 
 

@@ -91,7 +91,8 @@ pub enum DiagnosisError {
     },
     /// The records observe different quantities or have different units.
     #[error(
-        "record {record} observes another quantity, or in another unit, than record 1; diagnose them apart"
+        "record {record} observes another quantity, or in another unit, than record 1; diagnose them \
+         separately"
     )]
     MixedQuantities {
         /// Number of the record, from 1.

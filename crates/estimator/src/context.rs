@@ -158,8 +158,9 @@ impl<'a> FitContext<'a> {
     /// [`FitError::Checkpoint`] if the stored bytes are not a state of this type.
     pub fn resumed<T: DeserializeOwned>(&self) -> Result<Option<T>, FitError> {
         let Some(bytes) = self.checkpoints.and_then(Checkpoints::latest) else { return Ok(None) };
-        let refused =
-            |problem: &str| FitError::Checkpoint { problem: format!("what was kept is none: {problem}") };
+        let refused = |problem: &str| FitError::Checkpoint {
+            problem: format!("the saved state cannot be read: {problem}"),
+        };
         match postcard::take_from_bytes(&bytes) {
             Ok((state, [])) => Ok(Some(state)),
             Ok((_, rest)) => Err(refused(&format!("{} bytes too many", rest.len()))),

@@ -188,15 +188,16 @@ const LEARN: &[Field] = &[
     Field {
         key: "max_steps",
         kind: Kind::Integer { min: 0, max: i64::MAX },
-        meaning: "Cap on the steps of every fit, whatever a learner's own; 0 leaves networks untrained.",
+        meaning: "Cap on the steps of every fit, in addition to a learner's own; 0 leaves networks \
+                  untrained.",
         ..PLAIN
     },
     Field {
         key: "ablations",
         kind: Kind::Boolean,
         default: Default::Boolean(true),
-        meaning: "Whether each learner's model is judged twice more: with everything that it learned at zero, and given noise \
-                  in place of past and input.",
+        meaning: "Whether each learner's model is judged twice more: with everything that it learned set to \
+                  zero, and with noise in place of past and input.",
         ..PLAIN
     },
 ];
@@ -227,7 +228,7 @@ const PROBLEM: &[Field] = &[
         key: "every",
         kind: Kind::Integer { min: 1, max: 1_000_000 },
         default: Default::Integer(1),
-        meaning: "Takes one sample of so many.",
+        meaning: "Uses one of every so many samples.",
         ..PLAIN
     },
     Field {
@@ -248,14 +249,15 @@ const PROBLEM: &[Field] = &[
         key: "test_records",
         kind: Kind::Integer { min: 0, max: 100_000 },
         default: Default::Integer(1),
-        meaning: "By record: how many, the last ones, are tested on.",
+        meaning: "By record: number of records, the last ones, to test on.",
         ..PLAIN
     },
     Field {
         key: "validation_records",
         kind: Kind::Integer { min: 0, max: 100_000 },
         default: Default::Integer(0),
-        meaning: "By record: how many, before those, choose among models; with 0 the end of the training records does.",
+        meaning: "By record: number of records before those that are used to choose among models; with 0, \
+                  the end of the training records is used.",
         ..PLAIN
     },
     Field {
@@ -269,22 +271,23 @@ const PROBLEM: &[Field] = &[
         key: "validation_share",
         kind: Kind::Float { min: 0.01, max: 0.9 },
         default: Default::Float(0.2),
-        meaning: "Share of a training part at its end that chooses among models, where no record does.",
+        meaning: "Share at the end of a training part that is used to choose among models if no whole record \
+                  is.",
         ..PLAIN
     },
     Field {
         key: "hold",
         kind: Kind::Choice(&["auto", "zero", "linear"]),
         default: Default::Text("auto"),
-        meaning: "What the input does between samples: keep its value, or go straight to the next; auto: what a law of all terms \
-                  follows better.",
+        meaning: "Input between samples: it keeps its value, or goes straight to the next; auto: whichever a \
+                  law of all terms follows better.",
         ..PLAIN
     },
     Field {
         key: "warm_up_s",
         kind: Kind::Float { min: 1e-9, max: 1e9 },
         unit: "s",
-        meaning: "Past that a prediction starts from; left open, a period.",
+        meaning: "Length of the past that a prediction starts from; left open, a period.",
         ..PLAIN
     },
     Field {

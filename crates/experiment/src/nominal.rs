@@ -87,7 +87,7 @@ const FIELDS: &[Field] = &[
     Field {
         key: "damping",
         kind: NON_NEGATIVE,
-        meaning: "Viscous damping; damping_ratio says it otherwise.",
+        meaning: "Viscous damping; damping_ratio is an alternative.",
         ..NUMBER
     },
     Field {
@@ -100,7 +100,8 @@ const FIELDS: &[Field] = &[
     Field {
         key: "stiffness",
         kind: NON_NEGATIVE,
-        meaning: "Stiffness of the spring; 0 for a drive without one, or a pendulum that only its weight holds. natural_frequency, natural_frequency_rad_s and period say it otherwise.",
+        meaning: "Stiffness of the spring; 0 for a drive without one, or a pendulum that only its weight \
+                  holds. natural_frequency, natural_frequency_rad_s and period are alternatives.",
         ..NUMBER
     },
     Field {
@@ -134,7 +135,7 @@ const FIELDS: &[Field] = &[
         key: "input_gain",
         default: Default::Float(1.0),
         unit: "torque or force per unit of the input",
-        meaning: "What a unit of the input exerts.",
+        meaning: "Torque or force that a unit of the input exerts.",
         ..NUMBER
     },
     Field {
@@ -175,7 +176,8 @@ const EFFECT: &[Field] = &[
         kind: Kind::Float { min: 1.0, max: 1.0 },
         default: Default::Float(1.0),
         unit: "",
-        meaning: "As in a simulation, where an effect may come by chance; a nominal simulator has it.",
+        meaning: "Always 1: a nominal simulator has the effect. In a simulation, an effect occurs with this \
+                  probability.",
         ..NUMBER
     },
 ];

@@ -159,7 +159,8 @@ const PREDICT: &[Field] = &[
         key: "draws_seeded",
         kind: Kind::Integer { min: 1, max: 100_000 },
         default: Default::Integer(20),
-        meaning: "Draws for methods with random numbers of their own, the slow ones: the first ones of those.",
+        meaning: "Draws for methods with random numbers of their own, which are slow: the first of all \
+                  draws.",
         source: "what a minute on two cores allows",
         ..PLAIN
     },
@@ -176,7 +177,7 @@ const PREDICT: &[Field] = &[
         kind: Kind::Integer { min: 2, max: 1000 },
         default: Default::Integer(4),
         unit: "blocks",
-        meaning: "Interpolation: one block of so many is held out; the first and the last block never.",
+        meaning: "Interpolation: one of every so many blocks is held out, but never the first or the last.",
         source: "fits keep three quarters of the peaks",
     },
     Field {
@@ -197,7 +198,7 @@ const PREDICT: &[Field] = &[
     Field {
         key: "max_steps",
         kind: Kind::Integer { min: 0, max: i64::MAX },
-        meaning: "Cap on the training steps, whatever a method's own; 0 leaves it untrained.",
+        meaning: "Cap on the training steps, in addition to a method's own; 0 leaves it untrained.",
         ..PLAIN
     },
 ];
@@ -217,7 +218,7 @@ const PIPELINE: Field = Field {
     key: "pipeline",
     kind: Kind::Choice(&["paper", "recommended"]),
     default: Default::Text("recommended"),
-    meaning: "How peaks are found: as the paper did, or as we would.",
+    meaning: "Method of finding the peaks: that of the paper, or the recommended one.",
     ..PLAIN
 };
 

@@ -44,14 +44,15 @@ const COMPARE_FIELDS: &[Field] = &[
         key: "inertia_kg_m2",
         kind: Kind::Float { min: 1e-12, max: 1e12 },
         unit: "kg m^2",
-        meaning: "Moment of inertia, for stiffness and damping coefficient, which are per unit of inertia without it; a record of a free decay does not tell it.",
+        meaning: "Moment of inertia, for stiffness and damping coefficient, which are per unit of inertia \
+                  without it; a free decay does not determine it.",
         ..PLAIN
     },
     Field {
         key: "claims",
         kind: Kind::Choice(&["none", "paper"]),
         default: Default::Text("none"),
-        meaning: "Whose statements to check against the numbers: the paper's, or nobody's.",
+        meaning: "Source of the statements to check against the numbers: the paper, or none.",
         ..PLAIN
     },
 ];
@@ -90,14 +91,14 @@ pub(crate) const DATA: &[Field] = &[
     },
     Field {
         key: "source",
-        meaning: "Where the record can be had, for the message where it is absent: repository and file.",
+        meaning: "Repository and file of the record, for the message if it is absent.",
         ..PLAIN
     },
     Field {
         key: "format",
         kind: Kind::Choice(Format::NAMES),
         default: Default::Text("auto"),
-        meaning: "Format of the file; auto tells it by the first line.",
+        meaning: "Format of the file; auto detects it from the first line.",
         ..PLAIN
     },
     Field {
@@ -156,8 +157,8 @@ pub(crate) const DATA: &[Field] = &[
         key: "missing",
         kind: Kind::Choice(Missing::NAMES),
         default: Default::Text("segment"),
-        meaning: "csv: what cells without a number are: a gap, counted by clocks and bridged by nothing (segment), rows that \
-                  the file never had (drop), or an error (refuse).",
+        meaning: "csv: how to treat cells without a number: as a gap, which clocks count and nothing bridges \
+                  (segment), as rows that the file never had (drop), or as an error (refuse).",
         ..PLAIN
     },
     Field {
@@ -192,7 +193,7 @@ const ENVELOPE: &[Field] = &[Field {
     key: "pipeline",
     kind: Kind::Choice(&["paper", "recommended"]),
     default: Default::Text("recommended"),
-    meaning: "How peaks are found: as the paper did, or as we would.",
+    meaning: "Method of finding the peaks: that of the paper, or the recommended one.",
     ..PLAIN
 }];
 
@@ -272,7 +273,8 @@ pub(crate) const CHECKPOINT: &[Field] = &[
         kind: Kind::Float { min: 0.0, max: 1e9 },
         default: Default::Float(5.0),
         unit: "s",
-        meaning: "Time between two checkpoints of a fit, and time spent on finished fits before they are kept: what a crash costs at most; 0 keeps the state before every step.",
+        meaning: "Time between two checkpoints of a fit, and time spent on finished fits before they are \
+                  saved: a crash costs at most this much work; 0 saves the state before every step.",
         source: "a checkpoint of 100 kB takes 0.6 to 12 ms, the machine idle or busy: 0.2 % of a fit at most",
     },
     Field {
@@ -295,7 +297,7 @@ const FIT: &[Field] = &[
     Field {
         key: "max_steps",
         kind: Kind::Integer { min: 0, max: i64::MAX },
-        meaning: "Cap on the training steps, whatever the estimator's own; 0 leaves it untrained.",
+        meaning: "Cap on the training steps, in addition to the estimator's own; 0 leaves it untrained.",
         ..PLAIN
     },
     Field {

@@ -51,8 +51,8 @@ pub fn equation_text(repaired: &Repaired) -> String {
     }));
     let mut text = match terms.len() {
         0 => format!("{left} = 0"),
-        1 => format!("{left} = what follows"),
-        _ => format!("{left} = the sum of what follows"),
+        1 => format!("{left} = the term below"),
+        _ => format!("{left} = the sum of the terms below"),
     };
     for term in terms {
         let _ = write!(text, "\n  {term}");
@@ -72,7 +72,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
     }
     for active in &repaired.chain {
         let description = active.effect().description();
-        let _ = write!(text, "\n\nOn the way to the file: {}: {}", description.title, description.equation);
+        let _ = write!(text, "\n\nIn the measurement chain: {}: {}", description.title, description.equation);
     }
     for sentence in &repaired.left_out {
         let _ = write!(text, "\n\nNot part of it: {}.", one_line(sentence));
@@ -116,8 +116,11 @@ pub fn equation_latex(repaired: &Repaired) -> String {
     }
     for active in &repaired.chain {
         let description = active.effect().description();
-        let _ =
-            writeln!(text, "  \\item on the way to the file: {}, ${}$", description.title, description.latex);
+        let _ = writeln!(
+            text,
+            "  \\item in the measurement chain: {}, ${}$",
+            description.title, description.latex
+        );
     }
     for sentence in &repaired.left_out {
         let _ = writeln!(text, "  \\item Not part of it: {}.", latex_words(&one_line(sentence)));

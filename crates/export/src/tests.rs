@@ -29,8 +29,8 @@ fn an_equation_lists_its_terms_and_every_number_with_its_unit() {
     let text =
         equation_text(&repaired(pendulum(), &[("coulomb_friction", &[7e-5]), ("gravity", &[0.1, 1.5])]));
     for line in [
-        "I θ″ + c θ′ + k (θ - θ_rest) = the sum of what follows",
-        "  Coulomb friction: -τ_c sign(θ′), and at rest whatever up to τ_c holds it",
+        "I θ″ + c θ′ + k (θ - θ_rest) = the sum of the terms below",
+        "  Coulomb friction: -τ_c sign(θ′); at rest, the torque up to τ_c that holds the body",
         "  Gravity: -m g l sin(θ + φ)",
         "  I = 5.000000e-4 kg m^2",
         "  τ_c = 7.000000e-5 N m (Coulomb friction)",
@@ -54,7 +54,7 @@ fn a_drive_without_a_spring_has_no_spring_in_its_equation() {
     .with_coordinate(Coordinate::Displacement);
     let drive = Repaired { input: Some(Hold::Linear), ..repaired(nominal, &[]) };
     let text = equation_text(&drive);
-    assert!(text.starts_with("I θ″ + c θ′ = what follows\n  input: g u(t)\n"), "{text}");
+    assert!(text.starts_with("I θ″ + c θ′ = the term below\n  input: g u(t)\n"), "{text}");
     assert!(text.contains("I = 9.500000e1 kg\n") && text.contains("θ is the displacement"), "{text}");
     assert!(configuration(&drive).contains("coordinate = \"displacement\""));
     assert!(python(&drive).contains("drive = input_gain * u(time)"));

@@ -26,8 +26,8 @@ pub enum IdentifyError {
     },
     /// The regression has no unique solution.
     #[error(
-        "the record does not tell damping, stiffness and input apart: its motion is too simple; give a record with a \
-         free decay or a richer input"
+        "the record does not determine damping, stiffness and input separately: its motion is too simple; \
+         give a record with a free decay or a richer input"
     )]
     Undetermined,
 }

@@ -75,7 +75,7 @@ impl Stored {
     /// [`LearnError::Stored`] if it has another form.
     pub fn about_as<T: DeserializeOwned>(&self) -> Result<T, LearnError> {
         serde_json::from_value(self.about.clone())
-            .map_err(|error| refused(format!("what it says of its training is of another form: {error}")))
+            .map_err(|error| refused(format!("its description of the training has another form: {error}")))
     }
 
     /// Returns the same model with everything that was learned set to zero: zero weights, and no draws of
@@ -102,7 +102,7 @@ impl Stored {
     /// [`LearnError::Stored`] if it has another form.
     pub fn described<T: DeserializeOwned>(&self) -> Result<T, LearnError> {
         serde_json::from_value(self.description.clone()).map_err(|error| {
-            refused(format!("the description of {} is of another form: {error}", self.learner))
+            refused(format!("the description of {} has another form: {error}", self.learner))
         })
     }
 

@@ -286,18 +286,22 @@ const SLOPE_OF_ROUNDING: f64 = 1e-8;
 fn stop(minimum: &Minimum, slope: f64) -> Stop {
     let steps = minimum.steps;
     let (reached, because) = match minimum.reason {
-        StopReason::Settled => {
-            (Reached::Converged, format!("the loss slopes by {slope:.0e} in the decoder's scaled numbers"))
-        }
+        StopReason::Settled => (
+            Reached::Converged,
+            format!("the gradient of the loss is {slope:.0e} in the decoder's scaled parameters"),
+        ),
         StopReason::Stationary if slope <= SLOPE_OF_ROUNDING => (
             Reached::Converged,
-            format!("no step lowers the loss or its slope any more, {slope:.0e} in the decoder's numbers"),
+            format!(
+                "no step lowers the loss or its gradient any more, which is {slope:.0e} in the decoder's \
+                 scaled parameters"
+            ),
         ),
         StopReason::Stationary => (
             Reached::Diverged,
             format!(
-                "no step lowers the loss, yet it slopes by {slope:.0e} in the decoder's numbers; lower \
-                 estimator.initial_scale or take another seed"
+                "no step lowers the loss, but its gradient is {slope:.0e} in the decoder's scaled \
+                 parameters; lower estimator.initial_scale or take another seed"
             ),
         ),
         StopReason::StepsSpent => (
@@ -352,8 +356,8 @@ mod tests {
             stop(&Minimum { parameters, loss: 0.1, last_gain: 0.0, steps: 7, reason }, slope)
         };
         for (reason, slope, reached, because) in [
-            (StopReason::Settled, 3e-16, Reached::Converged, "the loss slopes by 3e-16"),
-            (StopReason::Stationary, 3e-16, Reached::Converged, "or its slope any more"),
+            (StopReason::Settled, 3e-16, Reached::Converged, "the gradient of the loss is 3e-16"),
+            (StopReason::Stationary, 3e-16, Reached::Converged, "or its gradient any more"),
             (StopReason::Stationary, 0.1, Reached::Diverged, "lower estimator.initial_scale"),
             (StopReason::StepsSpent, 0.1, Reached::BudgetSpent, "7 steps ended; raise"),
             (StopReason::NotFinite, 0.1, Reached::Diverged, "lower estimator.initial_scale"),

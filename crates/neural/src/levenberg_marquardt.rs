@@ -103,13 +103,17 @@ impl State {
     fn refusal(&self, parameters: usize, max_steps: u64) -> Option<String> {
         let (found, steps, rejections) = (self.parameters.len(), self.steps, self.rejections);
         if found != parameters {
-            return Some(format!("what was kept has {found} parameters, expected {parameters}"));
+            return Some(format!("the saved state has {found} parameters, expected {parameters}"));
         }
         if steps > max_steps {
-            return Some(format!("what was kept has taken {steps} steps, expected at most {max_steps}"));
+            return Some(format!("the saved state has taken {steps} steps, expected at most {max_steps}"));
         }
-        (rejections >= MOST_REJECTIONS)
-            .then(|| format!("what was kept goes on after {rejections} rejected steps, expected fewer than {MOST_REJECTIONS}"))
+        (rejections >= MOST_REJECTIONS).then(|| {
+            format!(
+                "the saved state continues after {rejections} rejected steps, expected fewer than \
+                 {MOST_REJECTIONS}"
+            )
+        })
     }
 }
 

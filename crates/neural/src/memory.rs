@@ -31,8 +31,8 @@ pub fn check_memory(settings: &Resolved, parameters: usize, points: usize) -> Re
         key: hidden.key(),
         found: hidden.value.as_ref().map_or_else(String::new, ToString::to_string),
         expected: format!(
-            "fewer or narrower layers: the matrices of {parameters} parameters{at_points} take {:.0} GiB of memory, of \
-             which there may be {:.0}",
+            "fewer or narrower layers: the matrices of {parameters} parameters{at_points} take {:.0} GiB of \
+             memory; the limit is {:.0} GiB",
             (bytes / GIB).ceil(),
             MOST_BYTES / GIB
         ),

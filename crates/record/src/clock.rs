@@ -206,7 +206,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     }
     if found.gaps > 0 {
         let reason = format!(
-            "{} of more than 1.5 times the median step: samples are missing, so the index is no clock",
+            "{} of more than 1.5 times the median step: samples are missing, so the index is not a clock",
             counted(found.gaps, "gap"),
         );
         return (ClockKind::Host, reason);
@@ -242,12 +242,12 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     }
     let reason = if preference < -SIGNIFICANT {
         format!(
-            "the values run more smoothly on the stamps than on an even clock ({:.1} standard errors): \
-             the sensor was read when they say",
+            "the values run more smoothly on the stamps than on an even clock ({:.1} standard errors): the \
+             sensor was read at the stamped times",
             -preference
         )
     } else {
-        "the stamps are distinct, and the values do not tell them from an even clock".to_owned()
+        "the stamps are distinct, and the values do not distinguish them from an even clock".to_owned()
     };
     (ClockKind::Host, reason)
 }
@@ -373,7 +373,7 @@ mod tests {
     fn jitter_that_the_values_share_is_the_sensors() {
         let clock = auto(jittered());
         assert_eq!(clock.kind, ClockKind::Host, "{}", clock.reason);
-        assert!(clock.reason.contains("when they say"), "{}", clock.reason);
+        assert!(clock.reason.contains("at the stamped times"), "{}", clock.reason);
     }
 
     /// Regression: a stated rate gives stamps that doubles cannot hold exactly; the values must not affect
@@ -390,7 +390,7 @@ mod tests {
         let stamps = jittered();
         let clock = auto_of(stamps, &[0.3; 2000]);
         assert_eq!(clock.kind, ClockKind::Host, "{}", clock.reason);
-        assert!(clock.reason.contains("do not tell"), "{}", clock.reason);
+        assert!(clock.reason.contains("do not distinguish"), "{}", clock.reason);
     }
 
     #[test]

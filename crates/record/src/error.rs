@@ -116,7 +116,8 @@ pub enum Fault {
     },
     /// The file contains the samples of several series.
     #[error(
-        "column `{column}` tells {count} series apart: {values}; choose one: set `data.where` to {column}={example}"
+        "column `{column}` distinguishes {count} series: {values}; choose one: set `data.where` to \
+         {column}={example}"
     )]
     SeveralValues {
         /// Line of the header, from 1.

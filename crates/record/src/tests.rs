@@ -244,7 +244,7 @@ fn one_series_of_several_is_chosen() {
         text + &format!("{time:.2},Rotation,{angle:.7}\n{time:.2},Pitch,{:.7}\n", 2.0 * angle)
     });
     let message = refusal(&text);
-    assert!(message.contains("column `joint` tells 2 series apart: Rotation, Pitch"), "{message}");
+    assert!(message.contains("column `joint` distinguishes 2 series: Rotation, Pitch"), "{message}");
     assert!(message.ends_with("set `data.where` to joint=Rotation"), "{message}");
     let chosen = |value: &str| CsvColumns {
         filter: Some(Filter { column: "joint".to_owned(), value: value.to_owned() }),

@@ -242,7 +242,7 @@ impl<'a> Told<'a> {
         if !fitted.is_empty() {
             format!("{title} ({})", listed(&fitted, "and"))
         } else if possible.len() > 1 {
-            format!("{title} ({}: these data don’t tell which)", listed(&possible, "or"))
+            format!("{title} ({}: these data do not determine which)", listed(&possible, "or"))
         } else {
             title
         }
@@ -284,16 +284,14 @@ impl<'a> Told<'a> {
         }
         let possible = self.titles(&self.possible);
         if possible.len() > 1 {
-            parts.push(format!("the kind can’t be told on these data ({})", listed(&possible, "or")));
+            parts.push(format!("these data do not determine the kind ({})", listed(&possible, "or")));
         }
         if !is_open {
             parts.extend(self.repaired_kind().map(|id| self.sized(id)));
         }
         if self.is_fitted() {
             let share = self.class.gap_share.as_ref().filter(|_| !is_open);
-            parts.extend(
-                share.map(|share| format!("{} of what the effects close", share_with_interval(share))),
-            );
+            parts.extend(share.map(|share| format!("{} of the closed gap", share_with_interval(share))));
             parts.extend(self.errors());
         }
         let text =
@@ -357,17 +355,17 @@ pub fn verdict_sentence(result: &DiagnosisResult) -> String {
     let not_fitted = "on parts that were not fitted";
     let text = match result.verdict.status {
         VerdictStatus::None => format!(
-            "Nothing is missing: the simulator as given explains what was recorded, down to {floor} {not_fitted}{}.",
+            "Nothing is missing: the simulator as given explains the records down to {floor} {not_fitted}{}.",
             remaining(result)
         ),
         VerdictStatus::Calibration if is_calibrated_already(result) => format!(
-            "Nothing is missing: the simulator as given explains what was recorded, down to {floor} {not_fitted}; \
-             recalibration moves its coefficients by more than their errors and takes next to nothing off the \
+            "Nothing is missing: the simulator as given explains the records down to {floor} {not_fitted}; \
+             recalibration changes its coefficients by more than their errors but hardly lowers the held-out \
              error{rest}{}.",
             remaining(result)
         ),
         VerdictStatus::Calibration => format!(
-            "Only the coefficients were off: recalibrated, the simulator explains what was recorded down to {floor} \
+            "Only the coefficients were off: the recalibrated simulator explains the records down to {floor} \
              {not_fitted}, and no effect is missing{rest}{}.",
             remaining(result)
         ),
@@ -375,8 +373,8 @@ pub fn verdict_sentence(result: &DiagnosisResult) -> String {
         VerdictStatus::Unknown => format!(
             "Something is missing that no known effect explains{}{}{}.",
             match repeating(result) {
-                Some(torque) => format!(": {torque}; with it the simulator leaves {floor}{rest}"),
-                None => format!(": the best named model leaves {floor}, and what it leaves is no noise"),
+                Some(torque) => format!(": {torque}; with it, the error of the simulator is {floor}{rest}"),
+                None => format!(": the best named model has an error of {floor}; its residual is not noise"),
             },
             nameless(result).map_or_else(String::new, |share| format!("; {share}")),
             remaining(result),
@@ -418,13 +416,11 @@ fn effects(result: &DiagnosisResult, left: &str) -> String {
     text.push_str(&remaining(result));
     text.push_str(&repeating(result).map_or_else(String::new, |torque| format!("; {torque}")));
     if !is_in_the_motion {
-        let which = if is_off(result) { "recalibrated, the simulator" } else { "the simulator as given" };
-        return format!(
-            "{text}. Beside that nothing is missing: {which} explains what was recorded down to {left}."
-        );
+        let which = if is_off(result) { "the recalibrated simulator" } else { "the simulator as given" };
+        return format!("{text}. Nothing else is missing: {which} explains the records down to {left}.");
     }
     let share = nameless(result).map_or_else(String::new, |share| format!("; {share}"));
-    format!("{text}. Recalibrated and repaired, the simulator leaves {left}{share}.")
+    format!("{text}. The error of the recalibrated and repaired simulator is {left}{share}.")
 }
 
 /// Returns the error of the repaired simulator in units of the noise.
@@ -466,8 +462,8 @@ fn remaining(result: &DiagnosisResult) -> String {
 fn nameless(result: &DiagnosisResult) -> Option<String> {
     let share = nameless_share(result)?;
     Some(match share < 5e-4 {
-        true => "less than 0.1 % of the gap has no name".to_owned(),
-        false => format!("{} of the gap has no name", format::share(share)),
+        true => "named effects leave less than 0.1 % of the gap unexplained".to_owned(),
+        false => format!("named effects leave {} of the gap unexplained", format::share(share)),
     })
 }
 

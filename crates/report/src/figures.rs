@@ -76,9 +76,9 @@ fn residuals(run: &Run) -> Option<Figure> {
         shaded: vec![],
     };
     let title = "Residuals";
-    let explanation = "The same with the reference line subtracted: dots scattered evenly about \
-                       zero speak for a single damping ratio, a bend or a wave against it. Where \
-                       the estimator agrees with the reference its line lies on zero.";
+    let explanation = "The same peaks with the reference line subtracted: dots scattered evenly about zero \
+                       support a single damping ratio; a bend or a wave is evidence against it. If the \
+                       estimator agrees with the reference, its line lies on zero.";
     let csv = csv(&["time_s", "residual", "estimate_less_oracle"], rows, |r: &EnvelopeRow| {
         numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle])
     });
@@ -105,8 +105,8 @@ fn loss(run: &Run) -> Option<Figure> {
     let plot =
         Plot { x: step_axis(), y: Axis::log("loss (scaled units)"), series, shaded: shaded(&run.trace) };
     let title = "Loss";
-    let explanation = "What the training minimizes. Phases may weigh its terms differently, so \
-                       the fall within a phase counts, not the jump between two.";
+    let explanation = "The quantity that the training minimizes. Phases may weight its terms differently, so \
+                       only the decrease within a phase counts, not a jump between phases.";
     let csv = trace_csv(run, "loss", |row| row.loss);
     figure("loss", title, explanation, &plot, csv)
 }
@@ -121,8 +121,8 @@ fn decay_rate(run: &Run) -> Option<Figure> {
         shaded: shaded(&run.trace),
     };
     let title = "Decay rate";
-    let explanation = "λ as the training moves it; the dashed line is the value of closed-form \
-                       least squares on the same envelope.";
+    let explanation = "λ during the training; the dashed line is the value of closed-form least squares on \
+                       the same envelope.";
     let csv = trace_csv(run, "decay_rate", |row| row.decay_rate);
     figure("decay-rate", title, explanation, &plot, csv)
 }
@@ -153,9 +153,9 @@ fn distance(run: &Run) -> Option<Figure> {
         shaded: shaded(&run.trace),
     };
     let title = "Digits gained";
-    let explanation = "The distance of λ from that of the reference: each decade down is one more digit \
-                       that both share. Below the dotted line the digits tell how well the \
-                       training solves the fit, and nothing more about the oscillator.";
+    let explanation = "The distance of λ from that of the reference: each decade down is one more digit that \
+                       both share. Below the dotted line, more digits show only how well the training solves \
+                       the fit; they say nothing about the oscillator.";
     let csv = trace_csv(run, "relative_distance", relative);
     figure("digits", title, explanation, &plot, csv)
 }

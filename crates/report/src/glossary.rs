@@ -17,9 +17,9 @@ pub const TERMS: &[Term] = &[
     Term {
         name: "× noise",
         spellings: &["× noise"],
-        definition: "Size in units of the noise. Of an error: its root mean square divided by the noise floor, so that 1 \
-                     is what a perfect simulator leaves. Of a difference between two fits: over all samples together, \
-                     so that about 3 can be told from none.",
+        definition: "Size in units of the noise. For an error: its root mean square divided by the noise \
+                     floor, so that 1 is the error of a perfect simulator. For a difference between two \
+                     fits: over all samples together, so that about 3 is distinguishable from zero.",
     },
     Term {
         name: "Backbone curve",
@@ -30,8 +30,8 @@ pub const TERMS: &[Term] = &[
     Term {
         name: "Calibration error",
         spellings: &["calibration error"],
-        definition: "Mean distance between stated probabilities and how often what they were stated of was so. Scatter \
-                     alone makes it larger than zero.",
+        definition: "Mean distance between stated probabilities and the frequency with which they come true. \
+                     Scatter alone makes it larger than zero.",
     },
     Term {
         name: "Ceiling",
@@ -42,8 +42,9 @@ pub const TERMS: &[Term] = &[
     Term {
         name: "Clock",
         spellings: &["host clock", "uniform-index clock"],
-        definition: "Source of a sample’s time. The host clock is the time stamp in the file, which may be that of \
-                     receiving; the uniform-index clock counts samples and takes them as evenly spaced.",
+        definition: "Source of a sample’s time. The host clock is the time stamp in the file, which may be \
+                     the time of arrival; the uniform-index clock counts samples and assumes that they are \
+                     evenly spaced.",
     },
     Term {
         name: "Closure",
@@ -112,13 +113,15 @@ pub const TERMS: &[Term] = &[
     Term {
         name: "Recalibrated",
         spellings: &["recalibrated", "recalibration"],
-        definition: "With the coefficients of the given simulator fitted to the record, and no effect added.",
+        definition: "Said of the given simulator if its own coefficients are fitted to the record and no \
+                     effect is added.",
     },
     Term {
         name: "Reference (least squares)",
         spellings: &["closed-form least squares", "certified least squares", "reference (least squares)"],
-        definition: "Closed-form least-squares fit of a line to the logarithm of the amplitude, computed in extended \
-                     precision: what every other method is compared with. It is exact for the fit, not for the oscillator.",
+        definition: "Closed-form least-squares fit of a line to the logarithm of the amplitude, computed in \
+                     extended precision. Every other method is compared with it. It is exact for the fit, \
+                     not for the oscillator.",
     },
     Term {
         name: "Residual",
@@ -140,8 +143,8 @@ pub const TERMS: &[Term] = &[
     Term {
         name: "Stability",
         spellings: &["stability"],
-        definition: "Part of the random draws of a record’s segments, with replacement, in which a class of effects is better \
-                     supported than whatever takes its place.",
+        definition: "Share of the bootstrap draws of a record’s segments in which a class of effects is \
+                     better supported than the effects that replace it.",
     },
     Term {
         name: "Standard error",

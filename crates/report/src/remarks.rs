@@ -19,7 +19,7 @@ pub fn noticed(data: &DataSummary) -> Vec<String> {
         sentences.push(format!("Time stamps: {}.", ended(&data.believed_clock_reason)));
     } else {
         sentences.push(format!(
-            "Time stamps: {}. They speak for the {} clock; in force is the {} clock ({}).",
+            "Time stamps: {}. They support the {} clock, but the {} clock is in force ({}).",
             ended(&data.believed_clock_reason),
             data.believed_clock,
             data.clock,
@@ -95,7 +95,7 @@ pub fn bar_state(row: &BarRow) -> &str {
     let [low, high] = row.interval_95;
     let excludes = row.at_least.is_some_and(|bar| high < bar) || row.at_most.is_some_and(|bar| low > bar);
     match (row.state.as_str(), row.missed_beyond_chance) {
-        ("not met", false) if excludes => "not met, by no more than scatter adds",
+        ("not met", false) if excludes => "not met, by no more than scatter explains",
         ("not met", false) if low.is_finite() && high.is_finite() => "not met, within chance",
         (state, _) => state,
     }
@@ -138,7 +138,7 @@ mod tests {
         data.clock = "host".into();
         data.clock_reason = "set in the configuration".into();
         let text = noticed(&data).join(" ");
-        assert!(text.ends_with("in force is the host clock (set in the configuration)."), "{text}");
+        assert!(text.ends_with("but the host clock is in force (set in the configuration)."), "{text}");
     }
 
     #[test]
@@ -156,7 +156,7 @@ mod tests {
         };
         assert_eq!(bar_state(&bar(0.02, 0.07, false)), "not met, within chance");
         assert_eq!(bar_state(&bar(0.04, 0.07, true)), "not met");
-        assert_eq!(bar_state(&bar(0.04, 0.07, false)), "not met, by no more than scatter adds");
+        assert_eq!(bar_state(&bar(0.04, 0.07, false)), "not met, by no more than scatter explains");
         assert_eq!(bar_state(&bar(f64::NAN, f64::NAN, false)), "not met");
         assert_eq!(bar_state(&BarRow { state: "met".into(), ..bar(0.0, 0.01, false) }), "met");
     }

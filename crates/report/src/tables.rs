@@ -129,7 +129,7 @@ pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
 pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
     let oracle = &result.oracle;
     vec![
-        fact("Digits the arithmetic promises", fixed(oracle.promised_digits, 1)),
+        fact("Digits guaranteed by the arithmetic", fixed(oracle.promised_digits, 1)),
         fact("Condition number, columns scaled", significant(oracle.condition, 3)),
         fact("Autocorrelation of the residuals at lag one", fixed(oracle.residual_autocorrelation, 3)),
     ]
@@ -153,7 +153,7 @@ pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
         fact(
             "Resolution",
             data.resolution.map_or_else(
-                || "no lattice found".to_owned(),
+                || "no quantization steps found".to_owned(),
                 |step| quantity(&significant(step, 6), &data.unit),
             ),
         ),

@@ -56,8 +56,8 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
             tone: if result.pass { Tone::Caution } else { Tone::Bad },
             label: if result.pass { "Within tolerance, not converged" } else { "Not converged" },
             sentence: format!(
-                "The {who} came to a standstill after {steps} steps: none improved the fit any more, and its own condition \
-                 for a solution did not hold. The damping ratio it had reached, {zeta}, {comparison}."
+                "The {who} stalled after {steps} steps: no step improved the fit any more, and its own \
+                 convergence condition was not met. The damping ratio it had reached, {zeta}, {comparison}."
             ),
         },
         Reached::Interrupted => Verdict {
@@ -87,7 +87,10 @@ pub(crate) fn next(result: &EstimationResult) -> Vec<String> {
             vec!["Resume it: the same call with --out and this folder, and --resume.".to_owned()]
         }
         Reached::BudgetSpent => {
-            vec!["Raise fit.max_steps, or leave it out: the budget ended before the fit had.".to_owned()]
+            vec![
+                "Raise fit.max_steps, or leave it out: the budget of steps ended before the fit converged."
+                    .to_owned(),
+            ]
         }
         Reached::Diverged | Reached::Stalled => vec![
             "Run it with another seed (seed=1), or with another method (trainer list estimators).".to_owned(),
@@ -291,7 +294,7 @@ mod tests {
         assert!(text.contains("before it converged"), "{text}");
         let (label, text) = sentence(|r| r.estimate.reached = Reached::Stalled);
         assert_eq!(label, "Within tolerance, not converged");
-        assert!(text.contains("standstill"), "{text}");
+        assert!(text.contains("stalled"), "{text}");
         let (label, _) = sentence(|r| {
             r.estimate.reached = Reached::Stalled;
             r.pass = false;

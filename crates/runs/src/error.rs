@@ -38,8 +38,8 @@ pub enum RunError {
     },
     /// A checkpoint differs from what was written.
     #[error(
-        "{}: the checkpoint is damaged: {problem}; nothing of it is used. Take the file away and resume again: \
-         what it held is computed anew",
+        "{}: the checkpoint is damaged: {problem}; nothing of it is used. Remove the file and resume again: \
+         its contents are computed again",
         path.display()
     )]
     Damaged {

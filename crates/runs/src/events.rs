@@ -76,7 +76,7 @@ impl EventLog {
                 .ok_or_else(|| refused("it does not end in a digest"))?;
             let digest = chained(&log.digest, body);
             if digest != stated {
-                return Err(refused("its digest is not that of what it says"));
+                return Err(refused("its digest does not match its text"));
             }
             log.events.push(event(line.as_bytes()).map_err(|error| refused(&error.to_string()))?);
             log.text.push_str(line);
@@ -310,6 +310,6 @@ mod tests {
             text.lines().filter(|line| !line.contains("two")).map(|line| format!("{line}\n")).collect();
         let message = EventLog::parse(&path, without.as_bytes()).unwrap_err().to_string();
         assert!(message.contains("events.jsonl:2: the line has been changed"), "{message}");
-        assert!(message.contains("its digest is not that of what it says"), "{message}");
+        assert!(message.contains("its digest does not match its text"), "{message}");
     }
 }

@@ -206,7 +206,7 @@ impl Document {
                     line,
                     column,
                     problem: format!(
-                        "the name {:?} has other signs than letters, digits, _ and -",
+                        "the name {:?} has characters other than letters, digits, _ and -",
                         name.get_ref()
                     ),
                 });

@@ -84,7 +84,7 @@ pub fn case(key: &str, word: &str, then: Value) -> Value {
 #[must_use]
 pub fn with_base(mut table: Value, requirements: Value) -> Value {
     let base = json!({
-        "description": "Files that this one stands on; what is said here goes before what they say.",
+        "description": "Files that this one builds on; its own keys override theirs.",
         "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" } }],
     });
     insert(&mut table, "", "base", base);

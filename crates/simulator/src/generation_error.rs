@@ -12,7 +12,7 @@ pub enum GenerationError {
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
     /// The samples that the measurement chain leaves do not form a record.
-    #[error("what is left is no record: {0}")]
+    #[error("the remaining samples are not a record: {0}")]
     Record(#[from] Fault),
     /// The sampling is invalid.
     #[error("the sampling's {what} is {value}; expected {expected}")]

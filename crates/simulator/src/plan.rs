@@ -162,7 +162,7 @@ pub(crate) fn nominal_keys(units: ConfiguredUnits) -> [NumberKey; 5] {
             range: Range::ANY,
             default: Default::Float(1.0),
             unit: "torque or force per unit of the input",
-            meaning: "What a unit of the input exerts.",
+            meaning: "Torque or force that a unit of the input exerts.",
         },
     ]
 }

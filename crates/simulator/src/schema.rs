@@ -59,7 +59,8 @@ const SIMULATE: &[Field] = &[
     Field {
         key: "effects_per_system",
         kind: Kind::Integer { min: 0, max: 26 },
-        meaning: "Exactly so many of the effects listed, drawn with their probabilities as weights; left open, each comes with its probability.",
+        meaning: "Exact number of effects per system, drawn from those listed with their probabilities as \
+                  weights; left open, each effect occurs with its own probability.",
         ..PLAIN
     },
 ];

@@ -20,7 +20,7 @@ pub const EVIDENCE: Field = Field {
     kind: Kind::Float { min: 0.0, max: 1e6 },
     default: Default::Float(2.0),
     unit: "",
-    meaning: "How far a richer law has to lower the Bayesian information criterion.",
+    meaning: "Least reduction of the Bayesian information criterion for which a richer law is chosen.",
     source: "Kass, Raftery, J. Am. Stat. Assoc. 90 (1995) 773: positive evidence from 2, strong from 6",
 };
 

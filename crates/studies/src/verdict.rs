@@ -95,7 +95,7 @@ fn tested(
             ),
         }),
         (!worse.is_empty()).then(|| format!("worse: {}", listed(&worse))),
-        (!open.is_empty()).then(|| format!("not told from it: {}", listed(&open))),
+        (!open.is_empty()).then(|| format!("not distinguishable from it: {}", listed(&open))),
         (same > 0).then(|| format!("the same line: {}", methods(same))),
     ];
     format!("{}.", parts.into_iter().flatten().collect::<Vec<_>>().join("; "))
@@ -116,8 +116,8 @@ fn single_stretch(study: &ProblemStudy) -> String {
         format!("; the smallest is {} ({})", format::significant(error, 2), row.id)
     });
     format!(
-        "Beyond the last peak seen the best exponential misses by {}, and {} {} by less{best}: one stretch of \
-         one record is a single trial, which no test can tell from chance.",
+        "Beyond the last peak seen the best exponential misses by {}, and {} {} by less{best}: one stretch \
+         of one record is a single trial, which no test can distinguish from chance.",
         format::significant(reference, 2),
         methods(below),
         if below == 1 { "misses" } else { "miss" },

@@ -269,8 +269,9 @@ pub fn bias(record: &Record) -> Option<String> {
     (mean.abs() > most).then(|| {
         let what = if record.quantity() == Quantity::Velocity { "velocity" } else { "acceleration" };
         format!(
-            "the values average {}, which the {what} of a free swing does not: a sensor's bias, or gravity, for which an effect \
-             would be named; subtract it with --remove-mean",
+            "the values average {}, but the {what} of a free swing averages about zero: the sensor has a \
+             bias or measures gravity, and a diagnosis would name an effect for it; subtract it with \
+             --remove-mean",
             quantity(&significant(mean, 3), record.unit())
         )
     })

@@ -19,21 +19,27 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     let mut left_out: Vec<String> = Vec::new();
     for active in effects.iter().filter(|active| has_fitted_hidden_start(active.id())) {
         let title = title(active.id());
-        left_out
-            .push(format!("{title}: the second body's own motion at the start; here it starts moving along"));
+        left_out.push(format!(
+            "{title}: the second body's own motion at the start; in this file it starts with the motion of \
+             the first body"
+        ));
     }
     left_out.extend(own.left_out.iter().map(|(id, reason)| format!("{}: {reason}", title(id))));
     for id in &found.verdict.effects {
         if !own.effects.iter().any(|active| active.id() == *id) {
             left_out.push(match Effect::find(id).map(|effect| effect.description().kind) {
-                Ok(dynamics::Kind::System) => format!("{}: the rest angle has it already", title(id)),
-                _ => format!("{}: seen in stamps or values directly, no coefficient was fitted", title(id)),
+                Ok(dynamics::Kind::System) => {
+                    format!("{}: the fitted rest angle already includes it", title(id))
+                }
+                _ => {
+                    format!("{}: found directly in stamps or values, so no coefficient was fitted", title(id))
+                }
             });
         }
     }
     left_out.extend(own.undetermined.iter().map(|number| {
         let here = if number.is_nominal { "the nominal simulator's" } else { "the best fit's" };
-        format!("a number for {} that these data determine; the one here is {here}", number.name)
+        format!("a value of {} that these data determine; the value in this file is {here}", number.name)
     }));
     let system = match System::new(own.nominal, effects) {
         Ok(system) => system,

@@ -169,7 +169,7 @@ pub fn title(id: &str) -> String {
     match Status::of_row(id) {
         Some(Status::None) => "nothing is missing",
         Some(Status::Calibration) => "only the coefficients were off",
-        Some(Status::Unknown) => "something without a name",
+        Some(Status::Unknown) => "something that no known effect explains",
         Some(Status::Effect) | None => Effect::find(id).map_or(id, |effect| effect.description().title),
     }
     .to_owned()
@@ -184,7 +184,7 @@ fn effects(found: &Diagnosis) -> Vec<EffectRow> {
         id: effect.id.to_owned(),
         title: match (Status::of_row(effect.id), effect.gap_share) {
             (Some(Status::Unknown), Some(_)) => {
-                "something without a name: a torque along the position".to_owned()
+                "something that no known effect explains: a position-dependent torque".to_owned()
             }
             _ => title(effect.id),
         },
@@ -310,8 +310,8 @@ fn no_experiment(found: &Diagnosis) -> &'static str {
         Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
         Status::Effect => "None: no other effect explains these records as well as what was named.",
         Status::Unknown => {
-            "None that these data suggest: what is missing has no name yet. A second release from another amplitude \
-             tells whether it depends on amplitude or on time."
+            "These data suggest none, because no known effect explains what is missing. A second release \
+             from another amplitude shows whether it depends on amplitude or on time."
         }
     }
 }

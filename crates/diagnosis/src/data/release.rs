@@ -29,7 +29,8 @@ pub(crate) fn finding(until_s: f64) -> Finding {
     Finding {
         effect: None,
         text: format!(
-            "the first {until_s:.2} s are no free swing and are left out: until the release something held the body"
+            "the first {until_s:.2} s are left out, because they are not a free swing: something held the \
+             body until the release"
         ),
     }
 }

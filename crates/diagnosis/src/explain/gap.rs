@@ -123,10 +123,11 @@ pub(crate) fn gap(
         },
         noise_floor: floor,
         last_third: last_third.map(f64::sqrt),
-        held_out: "segments of about six periods (without a spring: three time constants), fitted to the even ones and \
-                   scored on the odd ones and the other way round; on the scored segments only the start states are \
-                   fitted. Fewer than eight segments: blocks of at least three quarters of a period, a quarter of \
-                   them held out at a time, nothing fitted to these"
+        held_out: "segments of about six periods (without a spring: three time constants); simulators are \
+                   fitted to the even segments and scored on the odd ones, and vice versa; on the scored \
+                   segments, only the initial states are fitted. With fewer than eight segments: blocks of \
+                   at least three quarters of a period; a quarter of them is held out at a time, and nothing \
+                   is fitted to these"
             .to_owned(),
     }
 }

@@ -29,7 +29,8 @@ pub(crate) fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> 
         .map(|known| Finding {
             effect: None,
             text: format!(
-                "the nominal simulator has {}: it is taken as known, and shows in stamps and values as they are",
+                "the nominal simulator has {}: no fit includes it; it is taken as known, and stamps and \
+                 values are used as they are",
                 known.active.id()
             ),
         })

@@ -114,8 +114,8 @@ impl ClockRates {
         let largest = self.rates.iter().copied().fold(0.0, |known: f64, rate| known.max(rate.abs()));
         let told: Vec<String> = self.rates.iter().map(|rate| format!("{:+.4} %", 100.0 * rate)).collect();
         let text = format!(
-            "the clocks of the records run at different rates ({} relative to the first), or the system was slower in some \
-             records at every amplitude: taken out of the stamps",
+            "the clocks of the records run at different rates ({} relative to the first), or the system was \
+             slower in some records at every amplitude; the difference was removed from the stamps",
             told.join(", ")
         );
         (largest > 0.0).then_some(Finding { effect: None, text })

@@ -19,7 +19,7 @@ pub(crate) fn finding(data: &Data, fit: &Fit) -> Option<Finding> {
     let steps = width / data.facts.resolution;
     Some(Finding {
         effect: None,
-        text: format!("readings stay behind the motion by {steps:.2} of a step, whichever way it goes"),
+        text: format!("readings lag behind the motion by {steps:.2} of a step, in both directions"),
     })
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
         findings.push(Finding {
             effect: Some("outliers"),
             text: format!(
-                "{} farther off than noise brings them from their neighbors, and {} left out",
+                "{} farther from the neighbors than noise explains {} left out",
                 counted(outliers, "isolated sample"),
                 if outliers == 1 { "was" } else { "were" },
             ),
@@ -73,12 +73,13 @@ pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<F
     (unseen as f64 > UNSEEN * all as f64).then(|| Finding {
         effect: None,
         text: format!(
-            "{unseen} of {all} samples are left out: nothing moves there by more than the sensor's steps or the noise shows"
+            "{unseen} of {all} samples are left out: the motion there is smaller than the sensor's steps or \
+             the noise"
         ),
     })
 }
 
-const UNDRIVEN: &str = "; the input is missing there too, and what it did meanwhile stays unexplained";
+const UNDRIVEN: &str = "; the input is missing there too, so its effect in the meantime stays unexplained";
 
 /// Returns a finding if the stamps show that samples are missing. `driven` adds that the input is missing
 /// there too.
@@ -86,7 +87,7 @@ fn dropouts(stamps: &StampStatistics, driven: bool) -> Option<Finding> {
     let (gaps, lost) = (counted(stamps.gaps, "gap"), counted(stamps.lost, "sample"));
     let text = match (stamps.gaps, stamps.lost) {
         (0, 0) => return None,
-        (0, _) => format!("bursts come later than their samples account for: {lost} missing"),
+        (0, _) => format!("the time between bursts is longer than their samples account for: {lost} missing"),
         (_, 0) => format!("{gaps} of more than 1.5 sampling intervals in the stamps"),
         (_, _) => format!("{lost} missing in {gaps} of the stamps, by whole sampling intervals"),
     };
@@ -141,8 +142,8 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
         findings.push(Finding {
             effect: Some("timestamp_jitter"),
             text: format!(
-                "stamps scatter by {:.4} ms about an even clock, on which the values run more smoothly ({:.1} standard \
-                 errors): believed, they would add {:.1} % of the noise variance",
+                "stamps scatter by {:.4} ms about an even clock, on which the values run more smoothly \
+                 ({:.1} standard errors): if used, the stamps would add {:.1} % of the noise variance",
                 1e3 * scatter.sqrt(),
                 stamps.preference_for_even,
                 100.0 * share

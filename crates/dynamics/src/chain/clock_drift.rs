@@ -23,7 +23,7 @@ const DESCRIPTION: Description = Description {
             symbol: "r",
             quantity: Quantity::Ratio,
             range: Range { minimum: -0.5, maximum: FASTEST, closed: true },
-            meaning: "how much faster than true time the clock runs at the start",
+            meaning: "relative rate error of the clock at the start; above 0 it runs fast",
             default: None,
         },
         Parameter {
@@ -35,7 +35,7 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
     ],
-    tell_tale: "A phase error that grows with time at every frequency in proportion.",
+    tell_tale: "A phase error that grows with time, in proportion to the frequency.",
     confused_with: &["stiffness_drift"],
     reference: "Riley, Handbook of Frequency Stability Analysis, NIST SP 1065 (2008), section 2",
     driven_only: false,

@@ -31,7 +31,7 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
     ],
-    tell_tale: "Gaps in the stamps; where stamps were made up from the index, jumps of the phase.",
+    tell_tale: "Gaps in the stamps; if the stamps were computed from the index, jumps of the phase.",
     confused_with: &["clock_drift"],
     reference: "Gilbert, Bell System Technical Journal 39 (1960) 1253",
     driven_only: false,

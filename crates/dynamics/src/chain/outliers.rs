@@ -20,7 +20,7 @@ const DESCRIPTION: Description = Description {
             symbol: "p",
             quantity: Quantity::Ratio,
             range: Range { minimum: 0.0, maximum: 1.0, closed: true },
-            meaning: "chance of a sample to be wrong, each on its own",
+            meaning: "probability that a sample is wrong, independently of the others",
             default: None,
         },
         Parameter {
@@ -32,7 +32,7 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
     ],
-    tell_tale: "Heavy tails: isolated samples far off, their neighbors right.",
+    tell_tale: "Heavy tails: isolated samples are far off, but their neighbors are right.",
     confused_with: &[],
     reference: "Huber, Annals of Mathematical Statistics 35 (1964) 73 (contaminated normal)",
     driven_only: false,

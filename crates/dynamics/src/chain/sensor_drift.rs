@@ -21,7 +21,8 @@ const DESCRIPTION: Description = Description {
         meaning: "change of the sensor's zero per second",
         default: None,
     }],
-    tell_tale: "The mean moves with time, not with amplitude, and goes on moving when the motion has ended.",
+    tell_tale: "The mean moves with time, not with amplitude, and continues to move after the motion has \
+                ended.",
     confused_with: &["constant_torque"],
     reference: "Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.2 (zero drift)",
     driven_only: false,

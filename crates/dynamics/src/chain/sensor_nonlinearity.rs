@@ -33,7 +33,8 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
     ],
-    tell_tale: "Harmonics and a mean that moves with A², as from a nonlinear spring, but depending on position alone: no speed, no acceleration changes them.",
+    tell_tale: "Harmonics and a mean that moves with A², as from a nonlinear spring; but they depend only on \
+                the position, not on speed or acceleration.",
     confused_with: &["asymmetric_stiffness", "cubic_stiffness", "gravity"],
     reference: "de Silva, Sensors and Actuators, 2nd ed., CRC Press 2015 (eccentricity error of encoders)",
     driven_only: false,

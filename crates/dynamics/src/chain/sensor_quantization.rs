@@ -28,7 +28,7 @@ const DESCRIPTION: Description = Description {
             symbol: "h",
             quantity: Quantity::Observed,
             range: Range::NON_NEGATIVE,
-            meaning: "how far a reading stays behind in either direction of motion",
+            meaning: "lag of a reading behind the motion, in either direction",
             default: Some(0.0),
         },
     ],

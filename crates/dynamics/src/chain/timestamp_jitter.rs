@@ -23,7 +23,7 @@ const DESCRIPTION: Description = Description {
         meaning: "standard deviation of a stamp's error",
         default: None,
     }],
-    tell_tale: "A residual in proportion to the velocity, and white.",
+    tell_tale: "A white residual whose size is proportional to the velocity.",
     confused_with: &["timestamp_batching"],
     reference: "Souders, Flach, Hagwood, Yang, IEEE Transactions on Instrumentation and Measurement 39 (1990) 80",
     driven_only: false,

@@ -11,7 +11,7 @@ const DESCRIPTION: Description = Description {
     title: "Backlash",
     kind: Kind::System,
     class: Class::Conservative,
-    equation: "+k sat(θ - θ_rest, ±b): the spring pulls only by what exceeds ±b",
+    equation: "+k sat(θ - θ_rest, ±b): the spring acts only on the deflection beyond ±b",
     latex: r"+k\,\operatorname{sat}_b(\theta-\theta_\mathrm{rest})",
     parameters: &[Parameter {
         name: "half_width",

@@ -11,7 +11,7 @@ const DESCRIPTION: Description = Description {
     title: "Coulomb friction",
     kind: Kind::System,
     class: Class::Dissipative,
-    equation: "-τ_c sign(θ′), and at rest whatever up to τ_c holds it",
+    equation: "-τ_c sign(θ′); at rest, the torque up to τ_c that holds the body",
     latex: r"-\tau_c\,\operatorname{sign}\dot\theta",
     parameters: &[Parameter {
         name: "torque",

@@ -41,7 +41,7 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
     ],
-    tell_tale: "Clipped-looking, asymmetric, and only while A is large.",
+    tell_tale: "The motion looks clipped on one side, but only while A is large.",
     confused_with: &["sensor_saturation"],
     reference: "Hunt, Crossley, Journal of Applied Mechanics 42 (1975) 440, with a linear contact spring",
     driven_only: false,

@@ -27,7 +27,7 @@ const DESCRIPTION: Description = Description {
             symbol: "δ",
             quantity: Quantity::Position,
             range: Range::POSITIVE,
-            meaning: "pre-sliding displacement over which it builds up",
+            meaning: "displacement over which the friction builds up before sliding",
             default: None,
         },
     ],

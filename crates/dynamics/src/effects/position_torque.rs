@@ -27,7 +27,8 @@ const DESCRIPTION: Description = Description {
             symbol: "n",
             quantity: Quantity::Wavenumber,
             range: Range::POSITIVE,
-            meaning: "radians of the sine to a radian or meter of the position: of an angle, how often it repeats in a turn",
+            meaning: "radians of the sine per radian or meter of the position; for an angle, the number of \
+                      waves per turn",
             default: None,
         },
         Parameter {
@@ -39,7 +40,8 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
     ],
-    tell_tale: "The frequency goes up and down as the swing decays: its ends pass one wave after another.",
+    tell_tale: "The frequency rises and falls as the swing decays, because its turning points pass one wave \
+                after another.",
     confused_with: &[],
     reference: "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., The Writers' Collective 2003, chapter 5",
     driven_only: false,

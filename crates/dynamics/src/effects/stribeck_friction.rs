@@ -13,7 +13,8 @@ const DESCRIPTION: Description = Description {
     title: "Stribeck friction",
     kind: Kind::System,
     class: Class::Dissipative,
-    equation: "-[τ_c + (τ_s - τ_c) exp(-(θ′/v_s)²)] sign(θ′), and at rest whatever up to τ_s holds it",
+    equation: "-[τ_c + (τ_s - τ_c) exp(-(θ′/v_s)²)] sign(θ′); at rest, the torque up to τ_s that holds the \
+               body",
     latex: r"-\bigl[\tau_c+(\tau_s-\tau_c)\,e^{-(\dot\theta/v_s)^2}\bigr]\operatorname{sign}\dot\theta",
     parameters: &[
         Parameter {

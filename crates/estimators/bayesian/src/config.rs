@@ -49,7 +49,7 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Choice(&["conjugate", "nuts"]),
         default: Default::Text("conjugate"),
         unit: "",
-        meaning: "What gives the decay rate: the posterior mean in closed form or the sampler's draws.",
+        meaning: "Source of the decay rate: the posterior mean in closed form, or the sampler's draws.",
         source: "both are the same posterior; the closed form has no Monte-Carlo error",
     },
     Field {
@@ -81,7 +81,7 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Boolean,
         default: Default::Boolean(true),
         unit: "",
-        meaning: "Whether the sampler checks the closed form; it never changes it.",
+        meaning: "Whether the sampler checks the closed form, which it never changes.",
         source: "a few milliseconds",
     },
     Field {

@@ -191,9 +191,9 @@ impl Fit<'_> {
             );
         }
         format!(
-            "{}, {} runaway trajectories after {} transitions of each chain; less than {LARGEST_R_HAT}, at \
-             least {:.0} and none are asked for: raise estimator.draws, estimator.warm_up or \
-             estimator.target_acceptance",
+            "{}, {} runaway trajectories after {} transitions of each chain; required are an R-hat below \
+             {LARGEST_R_HAT}, at least {:.0} effective draws and no runaway trajectory: raise \
+             estimator.draws, estimator.warm_up or estimator.target_acceptance",
             sample.in_words(),
             sample.divergences,
             sample.steps,

@@ -35,7 +35,7 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Choice(&["rbf", "matern-3/2", "matern-5/2"]),
         default: Default::Text("rbf"),
         unit: "",
-        meaning: "Covariance function of what the envelope does beside a line.",
+        meaning: "Covariance function of the deviation of the envelope from a line.",
         source: "the paper; Rasmussen, Williams 2006, section 4.2",
     },
     Field {

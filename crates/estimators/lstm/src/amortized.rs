@@ -44,7 +44,7 @@ pub const AMORTIZED_ENTRY: Entry = Entry {
     id: "lstm-amortized",
     paper_number: None,
     title: "Long short-term memory network, amortized",
-    summary: "Trained on simulated envelopes only, reads one it never saw, peak after peak.",
+    summary: "Trained only on simulated envelopes; reads a new envelope peak by peak.",
     tags: &[Tag::Amortized, Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735-1780",

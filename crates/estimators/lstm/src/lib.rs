@@ -35,7 +35,7 @@ pub const ENTRY: Entry = Entry {
     id: "lstm",
     paper_number: Some(15),
     title: "Long short-term memory network",
-    summary: "Reads the peaks one after the other and says the exponential that reconstructs them.",
+    summary: "Reads the peaks one after the other and outputs the exponential that reconstructs them.",
     tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735-1780",

@@ -59,7 +59,8 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Integer { min: 1, max: 100_000 },
         default: Default::Integer(8),
         unit: "",
-        meaning: "Converged after so many generations in which the least held-out error fell by less than 1 %.",
+        meaning: "The search has converged if the least held-out error fell by less than 1 % over this many \
+                  generations.",
         source: "10 and 15 choose the same expression on nine of ten seeds",
     },
     Field {
@@ -115,8 +116,8 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Float { min: 0.0, max: 10.0 },
         default: Default::Float(0.01),
         unit: "",
-        meaning: "What a node costs in a tournament, as a share of the loss.",
-        source: "small: the front looks after simplicity",
+        meaning: "Cost of a node in a tournament, as a share of the loss.",
+        source: "small, because the front already favors simplicity",
     },
     Field {
         key: "constant_steps",
@@ -140,7 +141,7 @@ pub(crate) const FIELDS: &[Field] = &[
         default: Default::Integer(256),
         unit: "",
         meaning: "Most peaks, evenly chosen, that the evolution looks at; the front is fitted to all of them.",
-        source: "more peaks make the evolution slower, not the laws other",
+        source: "more peaks make the evolution slower without changing the laws",
     },
     Field {
         key: "initial_steepness",

@@ -58,7 +58,7 @@ pub const AMORTIZED_ENTRY: Entry = Entry {
     id: "transformer-amortized",
     paper_number: None,
     title: "Transformer, amortized",
-    summary: "Trained on simulated envelopes only, reads one it never saw, all its peaks at once.",
+    summary: "Trained only on simulated envelopes; reads all peaks of a new envelope at once.",
     tags: &[Tag::Amortized, Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Vaswani et al., Advances in Neural Information Processing Systems 30 (2017)",

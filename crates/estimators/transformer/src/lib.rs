@@ -35,7 +35,7 @@ pub const ENTRY: Entry = Entry {
     id: "transformer",
     paper_number: Some(21),
     title: "Transformer",
-    summary: "Attends over the peaks, all at once, and says the exponential that reconstructs them.",
+    summary: "Attends over all peaks at once and outputs the exponential that reconstructs them.",
     tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Vaswani et al., Advances in Neural Information Processing Systems 30 (2017)",

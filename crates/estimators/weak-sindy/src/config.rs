@@ -60,7 +60,8 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Integer { min: 3, max: 1000 },
         default: Default::Integer(200),
         unit: "",
-        meaning: "Most test functions, narrow ones first; none is kept that the others already span.",
+        meaning: "Most test functions, narrow ones first; a function that the others already span is left \
+                  out.",
         source: "as many as there are steps between the peaks of a usual record: nothing is lost",
     },
     Field {

@@ -57,7 +57,7 @@ const FIELDS: &[Key] = &[
         key: "dry_friction",
         kind: Value::Boolean,
         default: Default::Boolean(true),
-        meaning: "Whether dry friction of a size to be learned stands beside the process, which is smooth.",
+        meaning: "Whether dry friction, whose size is learned, is added to the process, which is smooth.",
         ..PLAIN
     },
     Key {
@@ -65,7 +65,7 @@ const FIELDS: &[Key] = &[
         kind: Value::Integer { min: 100, max: 10_000_000 },
         default: Default::Integer(8_000),
         unit: "samples",
-        meaning: "Most training samples; of more, evenly chosen pieces.",
+        meaning: "Most training samples; if there are more, evenly spaced pieces are used.",
         ..PLAIN
     },
     Key {

@@ -89,14 +89,14 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Value::Float { min: 0.0, max: 1.0 },
         default: Default::Float(0.002),
         unit: "share of the acceleration",
-        meaning: "Terms that contribute less are left out, again and again.",
+        meaning: "Least contribution of a term; terms below it are removed repeatedly.",
         source: "small, since the refit tells true terms from others by their errors",
     },
     Field {
         key: "members",
         kind: Value::Integer { min: 0, max: 10_000 },
         default: Default::Integer(50),
-        meaning: "Resampled regressions that inclusion probabilities are counted from; 0 states none.",
+        meaning: "Number of resampled regressions for the inclusion probabilities; 0 for none.",
         source: "Fasel et al. 2022",
         ..PLAIN
     },
@@ -112,7 +112,7 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Value::Integer { min: 100, max: 10_000_000 },
         default: Default::Integer(20_000),
         unit: "samples",
-        meaning: "Most training samples that a refit uses; of more, evenly chosen pieces.",
+        meaning: "Most training samples of a refit; if there are more, evenly spaced pieces are used.",
         ..PLAIN
     },
     Field {

@@ -61,7 +61,7 @@ const SHARED: [Field; 11] = [
         key: "windows",
         kind: Value::Integer { min: 1, max: 1_000_000 },
         default: Default::Integer(1_024),
-        meaning: "Most windows of an epoch; of more, evenly chosen ones.",
+        meaning: "Most windows of an epoch; if there are more, evenly spaced ones are used.",
         ..OWN
     },
     Field {
@@ -98,7 +98,7 @@ const SHARED: [Field; 11] = [
         key: "patience",
         kind: Value::Integer { min: 1, max: 1_000_000 },
         default: Default::Integer(10),
-        meaning: "Epochs without a better free run over the validation part after which training ends.",
+        meaning: "Training ends after this many epochs without a better free run over the validation part.",
         ..OWN
     },
     Field {

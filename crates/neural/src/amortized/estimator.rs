@@ -162,7 +162,7 @@ impl<N: Skilled> Amortized<N> {
             Reached::Converged if reading.is_settled() => {
                 let envelopes = steps * self.training.batch as u64;
                 let last = match reading.exact {
-                    true => "saw rounding only".to_owned(),
+                    true => "changed λ only by rounding".to_owned(),
                     false => format!("moved λ by {moved:.1e} of its stated error"),
                 };
                 (

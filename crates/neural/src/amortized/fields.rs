@@ -88,7 +88,8 @@ pub const MOST_LOOKS: Field = Field {
     kind: Kind::Integer { min: 1, max: 1000 },
     default: Default::Integer(20),
     unit: "",
-    meaning: "Most looks at an envelope, each after the first at what the line of the last has left over.",
+    meaning: "Most looks at an envelope; each look after the first reads the residual of the previous look's \
+              line.",
     source: "several times what envelopes of the prior take",
 };
 
@@ -128,6 +129,7 @@ pub const CALIBRATION: Field = Field {
     kind: Kind::Integer { min: 0, max: 1_000_000 },
     default: Default::Integer(3000),
     unit: "envelopes",
-    meaning: "Simulated envelopes, none of the training's, on which the stated errors are scaled to hold the truth in 95 % of them; 0 for none.",
+    meaning: "Number of simulated envelopes, not used in training, on which the stated errors are scaled so \
+              that 95 % of the intervals contain the truth; 0 for no scaling.",
     source: "their chance is worth 0.4 % of coverage; Papadopoulos et al. 2002",
 };

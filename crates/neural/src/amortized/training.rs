@@ -85,11 +85,13 @@ impl State {
         let (found, steps) = (state.parameters.len(), state.steps);
         let before = state.before.len();
         let problem = if found != expected || before != expected {
-            format!("what was kept has {found} parameters and {before} of a step before, expected {expected}")
+            format!(
+                "the saved state has {found} parameters and {before} of a step before, expected {expected}"
+            )
         } else if steps > limit || !state.adam.has_taken(steps, expected) {
-            format!("what was kept is not what {steps} of {limit} steps on {expected} parameters lead to")
+            format!("the saved state is not the result of {steps} of {limit} steps on {expected} parameters")
         } else if state.words >= WORDS {
-            format!("what was kept has read {} words of a generator that has {WORDS}", state.words)
+            format!("the saved state has read {} words of a generator that has {WORDS}", state.words)
         } else {
             return Ok(state);
         };
@@ -293,9 +295,9 @@ mod tests {
                 "has 3 parameters and 2 of a step before, expected 2",
             ),
             (State { before: vec![], ..kept.clone() }, "has 2 parameters and 0 of a step before, expected 2"),
-            (State { adam: Adam::new(2), ..kept.clone() }, "not what 1 of 1 steps on 2 parameters lead to"),
-            (State { adam: Adam::new(1), steps: 0, ..kept.clone() }, "not what 0 of 1 steps"),
-            (State { steps: 2, ..kept.clone() }, "not what 2 of 1 steps"),
+            (State { adam: Adam::new(2), ..kept.clone() }, "not the result of 1 of 1 steps on 2 parameters"),
+            (State { adam: Adam::new(1), steps: 0, ..kept.clone() }, "not the result of 0 of 1 steps"),
+            (State { steps: 2, ..kept.clone() }, "not the result of 2 of 1 steps"),
             (State { words: WORDS, ..kept }, "has read 295147905179352825856 words"),
         ] {
             let refused = resumed(&state).unwrap_err();

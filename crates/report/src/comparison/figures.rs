@@ -50,8 +50,9 @@ fn log_amplitude(comparison: &Comparison) -> Option<Figure> {
         ],
         shaded: vec![],
     };
-    let explanation = "The same peaks on the scale that every method fits a line to: its slope is −λ. Dots \
-                       that bend away from the line in a row speak against a single damping ratio.";
+    let explanation = "The same peaks on a logarithmic scale, on which every method fits a line with slope \
+                       −λ. Dots that bend away from the line systematically are evidence against a single \
+                       damping ratio.";
     let csv = csv(&["time_s", "log_amplitude", "fit"], rows, |row: &EnvelopeRow| {
         [row.time_s, row.log_amplitude, row.oracle].map(number).into()
     });
@@ -72,7 +73,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
     let mut notes = Vec::new();
     if errors_of(&result.results).any(|error| error < LEAST_PERCENT) {
         notes.push(format!(
-            "Errors below {}, where the digits of a double end, are drawn there, zero among them.",
+            "Errors below {}, the precision of a double, are drawn at this value, including zero.",
             format::percent(LEAST_PERCENT)
         ));
     }
@@ -98,7 +99,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
         fields
     });
     let explanation = "Each decade to the left is one more digit of ζ that a method shares with certified \
-                       least squares. How close they come tells how well they solve the fit, and nothing \
+                       least squares. The distance shows how well a method solves the fit; it says nothing \
                        about the oscillator."
         .to_owned();
     Some(Figure { id: "errors".into(), title: title.into(), explanation, notes, drawing, csv, rows })

@@ -32,9 +32,11 @@ pub(super) fn guidelines(result: &ComparisonResult) -> WordTable {
     WordTable {
         id: "guidelines",
         title: "Table 6: choosing a method".to_owned(),
-        note: "The paper’s guidelines, and what the rows above say to each. One record on one machine: the \
-               times rank the methods roughly, and those of microseconds not at all."
-            .to_owned(),
+        note:
+            "The paper’s guidelines, each beside the result of this run. All times come from one record on \
+             one machine: they rank the methods only roughly, and times of microseconds do not rank them at \
+             all."
+                .to_owned(),
         columns: ["Scenario", "The paper’s guideline", "This run"],
         rows: rows.map(|(scenario, paper, run)| [scenario.to_owned(), paper.to_owned(), run]).into(),
         is_prose: true,
@@ -59,7 +61,8 @@ fn large_datasets(result: &ComparisonResult) -> String {
         .map(|(number, name)| of(result, number, name, digits))
         .join("; ");
     let (peaks, condition) = (result.envelope.peaks, result.oracle.condition);
-    let verdict = if peaks < LARGE && condition < HARD { ", which is neither large nor hard" } else { "" };
+    let verdict =
+        if peaks < LARGE && condition < HARD { ", which is neither large nor ill-conditioned" } else { "" };
     format!(
         "{each}; on {} peaks with a condition number of {}{verdict}.",
         whole(peaks),
@@ -72,8 +75,8 @@ fn noisy_data(result: &ComparisonResult) -> String {
         (Some((_, weighted)), Some((_, ordinary))) => {
             let moved = 100.0 * (weighted.zeta / ordinary.zeta - 1.0).abs();
             format!(
-                "Weighted and ordinary regression differ by {}. Nobody varied the noise: this run does \
-                 not try the guideline.",
+                "Weighted and ordinary regression differ by {}. This run does not test the guideline, \
+                 because the noise was not varied.",
                 if moved == 0.0 { "nothing".to_owned() } else { percent(moved) }
             )
         }
@@ -121,8 +124,8 @@ fn uncertainty(result: &ComparisonResult) -> String {
         )
     };
     format!(
-        "{who}. The methods differ from certified least squares by {} at most; its standard error is {} \
-         of ζ. How closely methods agree is no measure of uncertainty.",
+        "{who}. The methods differ from certified least squares by {} at most; its standard error is {} of \
+         ζ. Agreement between methods is no measure of uncertainty.",
         percent(result.max_error_percent),
         percent(share)
     )

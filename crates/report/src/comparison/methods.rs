@@ -6,17 +6,18 @@ use crate::format::{count, duration, fixed, significant};
 use crate::tables::whole;
 
 /// Explanation of these tables.
-pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀ is that of certified least squares; the worst is the largest over a \
-     method’s seeds. Digits are the significant digits in which the worst seed agrees with ζ₀; a double has \
-     15.7. ± is the method’s own standard error of ζ, where it states one. ζ, steps and state are the first \
-     seed’s, the time of a fit is the median over the seeds. A method passes where every seed is within the \
-     stated tolerance, or where it estimates something else. May differ says whether its value can differ from least \
-     squares at all. At zero and on noise are the first seed’s errors in percent with the learned part held at zero, and with \
-     noise for what it reads: an error that stays small says that this part, or what it read, contributed nothing to λ.";
+pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀ is that of certified least squares; the \
+     worst is the largest over a method’s seeds. Digits are the significant digits in which the worst seed \
+     agrees with ζ₀; a double has 15.7. ± is the method’s own standard error of ζ, where it states one. ζ, \
+     steps and state are the first seed’s, the time of a fit is the median over the seeds. A method passes \
+     where every seed is within the stated tolerance, or where it estimates something else. “May differ” \
+     states whether the method’s value can differ from least squares at all. “At zero” and “on noise” are \
+     the first seed’s errors in percent with the learned part set to zero and with noise in place of its \
+     input: if such an error stays small, the learned part, or its input, contributed nothing to λ.";
 
 /// Explanation of the two columns of ablations, for the terminal.
-pub const ABLATION_READING: &str = "an error that stays small says that the learned part, or what it read, contributed nothing to \
-     the decay rate";
+pub const ABLATION_READING: &str = "if such an error stays small, the learned part, or its input, \
+     contributed nothing to the decay rate";
 
 /// The error of a fit without a part, in percent; – where there is no such part.
 #[must_use]

@@ -82,9 +82,10 @@ pub(super) fn derived(result: &ComparisonResult) -> WordTable {
     WordTable {
         id: "derived",
         title: "Derived parameters".to_owned(),
-        note: "The standard errors follow from that of λ to first order; I and ω are taken as known, so \
-               what follows from them alone has none. A record does not tell I: it comes from the configuration \
-               (compare.inertia_kg_m2), and where that names none the numbers are per unit of inertia."
+        note: "The standard errors follow from that of λ to first order. I and ω are taken as known, so \
+               quantities that depend only on them have no standard error. A record does not determine I: it \
+               comes from the configuration (compare.inertia_kg_m2); without it, the numbers are per unit of \
+               inertia."
             .to_owned(),
         columns: ["Parameter", "Value ± standard error", "Formula"],
         rows: mechanical

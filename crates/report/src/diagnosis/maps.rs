@@ -40,8 +40,8 @@ pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
             Axis::linear("angular frequency (rad/s)"),
             Scale::Log,
             spectrum(&place.frequency),
-            "A peak at the swing’s own frequency is a wrong phase or loss, peaks at its multiples are nonlinear, a \
-             line elsewhere is something that shakes or a second mode.",
+            "A peak at the swing’s own frequency means a wrong phase or loss, peaks at its multiples mean a \
+             nonlinear effect, and a line elsewhere means an external vibration or a second mode.",
         ),
     ]
     .into_iter()
@@ -89,7 +89,7 @@ fn along(
     cells: &[MapCell],
     reading: &str,
 ) -> Option<Figure> {
-    let label = format!("RMS of what is left over ({})", result.gap.unit);
+    let label = format!("RMS of the residual ({})", result.gap.unit);
     let significant = cells.iter().filter(|cell| cell.significant);
     let marked = significant.filter_map(|cell| {
         let [from, to] = cell.bounds.first().copied()?;
@@ -103,7 +103,7 @@ fn along(
         },
         series: vec![
             Series {
-                label: "significance band (5 % of chance in any cell)".to_owned(),
+                label: "significance band (5 % false alarms over all cells)".to_owned(),
                 hue: Hue::Data,
                 mark: Mark::DottedLine,
                 points: stairs(cells, |cell| cell.band),
@@ -122,8 +122,8 @@ fn along(
     let drawing = plot.draw(&format!("{title}, with its significance band."))?;
     let count = cells.iter().filter(|cell| cell.significant).count();
     let explanation = format!(
-        "{reading} Above the dotted band the recalibrated simulator’s error is more than noise: so it is in {count} \
-         of {} cells.",
+        "{reading} Above the dotted band, the recalibrated simulator’s error is more than noise; this is the \
+         case in {count} of {} cells.",
         cells.len()
     );
     Some(framed(id, title.to_owned(), explanation, drawing, table(cells)))
@@ -145,9 +145,10 @@ fn phase(result: &DiagnosisResult, position: &str, velocity: &str) -> Option<Fig
         outline: "significant".to_owned(),
     };
     let drawing = map.draw("The gap over position and velocity.")?;
-    let explanation = "RMS error of the recalibrated simulator by where the motion is: the deeper the color, the \
-                       larger. Left and right are the turning points, top and bottom the fastest passages. Outlined \
-                       cells lie above what noise alone reaches in any cell with 5 % probability."
+    let explanation = "RMS error of the recalibrated simulator by position and velocity: the deeper the \
+                       color, the larger the error. Left and right are the turning points, top and bottom \
+                       the fastest passages. Outlined cells lie above the level that noise alone exceeds in \
+                       any of the cells with 5 % probability."
         .to_owned();
     Some(framed(
         "gap-in-the-phase-plane",

@@ -110,7 +110,7 @@ fn headline(result: &DiagnosisResult) -> Verdict {
             (explained, "Nothing is missing in the motion")
         }
         VerdictStatus::Effect => (explained, "Missing effect"),
-        VerdictStatus::Unknown => (Tone::Caution, "Unknown: a gap without a name"),
+        VerdictStatus::Unknown => (Tone::Caution, "Unknown: no known effect explains the gap"),
     };
     Verdict { tone, label, sentence: result.verdict.summary.clone() }
 }
@@ -129,14 +129,14 @@ fn warnings(result: &DiagnosisResult) -> Vec<String> {
         let titles: Vec<String> = class.iter().map(title).collect();
         let others = if titles.len() == 2 { "the other" } else { "the others" };
         warnings.push(format!(
-            "These data cannot tell {} apart: whichever is named, {others} would do as well.",
+            "These data cannot distinguish {}: whichever is named, {others} would explain them as well.",
             listed(&titles, "and")
         ));
     }
     if result.samples_used < 0.9999 {
         warnings.push(format!(
-            "The records are long: {} of their samples were used: every n-th as far as a swing stays well sampled, \
-             then whole stretches, evenly spaced.",
+            "The records are long, so {} of their samples were used: every n-th sample, as long as a swing \
+             stays well sampled, and then evenly spaced stretches.",
             format::share(result.samples_used)
         ));
     }
@@ -151,8 +151,8 @@ fn next(result: &DiagnosisResult) -> Vec<String> {
     }
     if matches!(result.verdict.status, VerdictStatus::Calibration | VerdictStatus::Effect) {
         steps.push(
-            "The repaired simulator stands beside this page: “trainer simulate repaired.toml” runs it, and the section \
-             on it below names the files for SciPy, Modelica, MuJoCo and URDF."
+            "The repaired simulator is saved beside this page: “trainer simulate repaired.toml” runs it, and \
+             its section below lists the files for SciPy, Modelica, MuJoCo and URDF."
                 .to_owned(),
         );
     }

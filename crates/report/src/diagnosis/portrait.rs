@@ -19,8 +19,10 @@ pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
             "Frequency against amplitude",
             "angular frequency (rad/s)",
             |point| Some(point.frequency),
-            "The backbone curve, flat for a linear oscillator. Where it rises with amplitude the spring stiffens; where it falls the spring softens, as with a hanging weight. Cycle by cycle \
-             from turning points, each dot the median of neighbors in amplitude; none below 10 × noise.",
+            "The backbone curve, flat for a linear oscillator. Where it rises with amplitude the spring \
+             stiffens; where it falls the spring softens, as with a hanging weight. The values are computed \
+             for each cycle from its turning points; each dot is the median of cycles with neighboring \
+             amplitudes. Amplitudes below 10 × noise are left out.",
         ),
         backbone(
             result,
@@ -36,17 +38,18 @@ pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
             "restoring-force",
             "The restoring-force surface",
             |cell| cell.measured,
-            "The measured acceleration over position and velocity, the input’s part taken away: the force law \
-             itself, per inertia. Of a linear spring it is a plane that falls from left to right.",
+            "The measured acceleration as a function of position and velocity, without the part of the \
+             input: the force law itself, per unit of inertia. For a linear spring, it is a plane that falls \
+             from left to right.",
         ),
         surface(
             result,
             "missing-force",
             "What the force law lacks",
             |cell| cell.missing,
-            "The same less the recalibrated simulator’s. A color that changes from left to right is a force that \
-             depends on position; one that changes from bottom to top is a loss. Scattered color is noise: \
-             accelerations are second differences of what was recorded.",
+            "The measured acceleration minus that of the recalibrated simulator. A color that changes from \
+             left to right is a force that depends on position; one that changes from bottom to top is a \
+             loss. Scattered color is noise: accelerations are second differences of the record.",
         ),
     ]
     .into_iter()

@@ -111,10 +111,10 @@ fn input(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Figure> {
 fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> Option<Figure> {
     let series = by_record(result, rows, "recorded", |row| row.observed);
     let plot = Plot { x: time(), y: observed_axis(result), series, shaded: vec![worst.span()] };
-    let drawing = plot.draw("What was recorded, over time.")?;
+    let drawing = plot.draw("The record over time.")?;
     let explanation = format!(
-        "What was recorded, on the clock that is believed. Shaded: the stretch in which the recalibrated \
-         simulator is farthest off, enlarged below.{}",
+        "The record, with times of the clock in force. Shaded: the stretch with the largest error of the \
+         recalibrated simulator, enlarged below.{}",
         left_out(result, rows).map_or_else(String::new, |said| format!(" {said}"))
     );
     let table = csv(&["record", "time_s", "observed"], rows, |row: &SeriesRow| {
@@ -192,9 +192,9 @@ fn zoom(result: &DiagnosisResult, worst: &Worst<'_>) -> Option<Figure> {
         format::quantity(&format::significant(to, 3), "s"),
         if result.records.len() > 1 { format!(" of record {}", worst.record) } else { String::new() }
     );
-    let explanation = "Record and simulators where the recalibrated one is farthest off. Each simulator starts this \
-                       stretch from the state that suits it best; coefficients were fitted to other stretches, but for the \
-                       simulator as given, which keeps its own."
+    let explanation = "Record and simulators where the recalibrated simulator has its largest error. Each \
+                       simulator starts this stretch from the initial state that fits best. Its coefficients \
+                       were fitted to other stretches; the simulator as given keeps its own."
         .to_owned();
     let table =
         csv(&["time_s", "observed", "given", "recalibrated", "repaired"], worst.rows, |row: &SeriesRow| {
@@ -214,7 +214,7 @@ fn residuals(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) ->
     let floor = 2.0 * result.gap.noise_floor;
     let plot = Plot {
         x: time(),
-        y: Axis::linear(format!("record less simulator ({})", result.gap.unit)),
+        y: Axis::linear(format!("record minus simulator ({})", result.gap.unit)),
         series: vec![
             Simulator::Recalibrated.series(Mark::Line, pieces(&own, |row| row.observed - row.recalibrated)),
             Simulator::Repaired.series(Mark::Line, pieces(&own, |row| row.observed - row.repaired)),
@@ -225,13 +225,14 @@ fn residuals(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) ->
     };
     let drawing = plot.draw("Residuals before and after the repair, over time.")?;
     let title = if result.records.len() > 1 {
-        format!("What is left over, record {}", worst.record)
+        format!("Residuals, record {}", worst.record)
     } else {
-        "What is left over".to_owned()
+        "Residuals".to_owned()
     };
-    let explanation = "The record less each simulator, on stretches that simulator was not fitted to. What lies \
-                       within the dotted lines is noise; a wave beyond them is structure that the simulator lacks."
-        .to_owned();
+    let explanation =
+        "The record minus each simulator, on stretches to which that simulator was not fitted. Residuals \
+         within the dotted lines are noise; a wave beyond them is structure that the simulator lacks."
+            .to_owned();
     let table = csv(&["time_s", "recalibrated", "repaired"], &own, |row: &SeriesRow| {
         [row.time_s, row.observed - row.recalibrated, row.observed - row.repaired].map(number).to_vec()
     });

@@ -27,13 +27,13 @@ pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
     let gap = &result.gap;
     let unnamed = result.row(VerdictStatus::Unknown).is_some_and(|row| row.gap_share.is_some());
     let with =
-        if unnamed { "with the named effects, and what has no name" } else { "with the named effects" };
+        if unnamed { "with the named effects and an unexplained torque" } else { "with the named effects" };
     let rows = [
         ("simulator as given", "only its start states fitted", gap.nominal),
         ("recalibrated", "its coefficients fitted, no effect added", gap.recalibrated),
         ("repaired", with, gap.repaired),
-        ("ceiling", "a free torque on top: what any further effect could reach", gap.ceiling),
-        ("noise floor", "measured from what is left over", gap.noise_floor),
+        ("ceiling", "with a free torque added: the best that any further effect could reach", gap.ceiling),
+        ("noise floor", "estimated from the white part of the residual", gap.noise_floor),
     ];
     let least = rows.iter().map(|row| row.2).filter(|rms| *rms > 0.0).fold(f64::INFINITY, f64::min);
     let most = rows.iter().map(|row| row.2).fold(0.0, f64::max);
@@ -62,8 +62,9 @@ pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
 pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
     let gap = &result.gap;
     let closed = format!(
-        "Closed of the whole gap: {}; of what recalibration leaves: {}. Closure compares squares above the noise \
-         floor, so that 99 % can still leave several times the noise: see the column “× noise”.",
+        "Closure of the whole gap: {}; of the gap after recalibration: {}. Closure compares squared errors \
+         above the noise floor, so even at 99 % the error can still be several times the noise: see the \
+         column “× noise”.",
         share_with_interval(&gap.closure),
         share_with_interval(&gap.closure_of_recalibrated)
     );
@@ -134,8 +135,8 @@ pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
 pub(super) fn exact_set(result: &DiagnosisResult) -> Option<String> {
     (!result.verdict.effects.is_empty()).then(|| {
         format!(
-            "Probability of exactly this set of effects, of every kind in it and of no other: {}. It is low wherever kinds \
-             cannot be told apart, however sure the classes are.",
+            "Probability of exactly this set of effects, with every kind correct and no other effect: {}. It \
+             is low if kinds cannot be distinguished, even if the classes are certain.",
             format::share(result.verdict.confidence)
         )
     })
@@ -150,9 +151,9 @@ pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
         .take(4)
         .map(|rival| {
             let verdict = if rival.distance < DISTINCT_DISTANCE {
-                "cannot be told apart here"
+                "not distinguishable on these data"
             } else {
-                "told apart on these data"
+                "distinguishable on these data"
             };
             format!(
                 "{} and {}: best fits {} × noise apart, {verdict}.",
@@ -196,7 +197,7 @@ pub(super) struct CoefficientView {
 pub(super) fn coefficients(result: &DiagnosisResult) -> Vec<CoefficientView> {
     let view = |(name, row): (String, &CalibratedRow)| {
         // Parameters of the simulator's own effects are held if the simulator says so.
-        let held = if name.contains('.') { "held" } else { "held: these data cannot tell it" };
+        let held = if name.contains('.') { "held" } else { "held: these data do not determine it" };
         let estimate = |found: &Option<WithInterval>| {
             found
                 .as_ref()
@@ -219,12 +220,12 @@ pub(super) fn coefficients(result: &DiagnosisResult) -> Vec<CoefficientView> {
 pub(super) fn chain(result: &DiagnosisResult) -> Vec<Fact> {
     let chain = &result.measuring_chain;
     vec![
-        fact("Clock believed", format!("{}: {}", chain.clock, chain.clock_reason)),
+        fact("Clock in force", format!("{}: {}", chain.clock, chain.clock_reason)),
         fact("Sampling rate", quantity(&significant(chain.sample_rate_hz, 6), "Hz")),
         fact(
             "Resolution",
             chain.resolution.map_or_else(
-                || "the values lie on no lattice".to_owned(),
+                || "no quantization steps found".to_owned(),
                 |step| quantity(&significant(step, 4), &result.gap.unit),
             ),
         ),

@@ -122,11 +122,11 @@ fn what_is_absent_is_said_and_breaks_nothing() {
     for part in [
         "There is no series.csv",
         "No backbone curves",
-        "These data cannot tell gravity and cubic stiffness apart",
+        "These data cannot distinguish gravity and cubic stiffness",
         "50.0\u{a0}% of their samples were used",
-        "held: these data cannot tell it",
+        "held: these data do not determine it",
         "not finite",
-        "the values lie on no lattice",
+        "no quantization steps found",
     ] {
         assert!(html.contains(part), "{part}");
     }
@@ -211,7 +211,7 @@ fn every_status_has_its_words_and_a_rest_above_the_noise_its_caution() {
         ("none", "Nothing is missing"),
         ("calibration", "Only calibration"),
         ("effect", "Missing effect"),
-        ("unknown", "a gap without a name"),
+        ("unknown", "no known effect explains the gap"),
     ] {
         result["verdict"]["status"] = json!(status);
         assert!(page(&result, "").contains(label), "{status}");
@@ -301,10 +301,10 @@ fn shares_that_round_to_zero_are_left_out() {
 fn the_verdict_tells_what_is_certain_likely_and_open_and_how_much_has_no_name() {
     let text = crate::verdict_sentence(&read(&classed()));
     for part in [
-        "The simulator certainly lacks dry friction (Coulomb or hysteresis: these data don’t tell which), and likely a nonlinear \
-         restoring force (gravity); the record shows sensor quantization, which the simulator lacks; periodic forcing \
-         remains open.",
-        "; 10.0 % of the gap has no name.",
+        "The simulator certainly lacks dry friction (Coulomb or hysteresis: these data do not determine \
+         which), and likely a nonlinear restoring force (gravity); the record shows sensor quantization, \
+         which the simulator lacks; periodic forcing remains open.",
+        "; named effects leave 10.0 % of the gap unexplained.",
     ] {
         assert!(text.contains(part), "no `{part}` in {text}");
     }
@@ -332,8 +332,9 @@ fn each_class_tells_its_kind_its_size_and_the_error_without_it() {
     assert_eq!(
         told,
         [
-            "certain dry friction: The kind can’t be told on these data (Coulomb or hysteresis); Coulomb: torque 2.000 N m \
-             [1.900, 2.100]; 62.0 % [58.0 %, 66.0 %] of what the effects close; error 0.00210 rad without it, 0.00110 rad with it.",
+            "certain dry friction: These data do not determine the kind (Coulomb or hysteresis); Coulomb: \
+             torque 2.000 N m [1.900, 2.100]; 62.0 % [58.0 %, 66.0 %] of the closed gap; error 0.00210 rad \
+             without it, 0.00110 rad with it.",
             "certain distortion by the sensor: Quantization, which the record shows without a fit.",
             "likely nonlinear restoring force: Gravity: torque 2.000 N m [1.900, 2.100]; error 0.00210 rad without it, 0.00110 \
              rad with it.",
@@ -350,7 +351,7 @@ fn the_first_screen_shows_classes_as_bars_and_no_confidence_of_the_exact_set() {
         "<strong>Certain</strong>",
         "<strong>Likely</strong>",
         "<strong>Open</strong>",
-        "<strong>Without a name</strong>",
+        "<strong>Unexplained</strong>",
         "Dry friction",
         "width: 95.0%",
         "width: 62.0%",

@@ -131,7 +131,7 @@ fn headline(result: &FleetResult) -> Verdict {
         .map(|class| format!("{} in {}", class_title(&class.id), whole(class.likely)))
         .collect();
     let common = if common.is_empty() {
-        "No class of effects is likely in any.".to_owned()
+        "No class of effects is likely in any of them.".to_owned()
     } else {
         format!("Most often: {}.", listed(&common, "and"))
     };
@@ -140,8 +140,8 @@ fn headline(result: &FleetResult) -> Verdict {
         tone: if is_whole { Tone::Good } else { Tone::Caution },
         label: if is_whole { "What the fleet lacks" } else { "What the fleet lacks, as far as it answered" },
         sentence: format!(
-            "Of {} diagnoses, {} name effects, {} are a matter of calibration, {} find nothing beyond the noise, and {} find a \
-             gap without a name. {common}",
+            "Of {} diagnoses, {} name effects, {} find only wrong coefficients, {} find nothing beyond the \
+             noise, and {} find a gap that no known effect explains. {common}",
             whole(all),
             whole(of(VerdictStatus::Effect)),
             whole(of(VerdictStatus::Calibration)),
@@ -156,7 +156,7 @@ fn origin(result: &FleetResult) -> Origin {
     let stated = result.cases.iter().map(|case| case.origin);
     verdict::origin_of_all(
         stated,
-        Some("Some were measured, others simulated or not said to be either: the table of cases says which."),
+        Some("Some were measured; others were simulated or have no stated origin: see the table of cases."),
     )
 }
 
@@ -215,7 +215,7 @@ fn case<'a>(case: &'a FleetCase, labels: &[String]) -> CaseView<'a> {
         VerdictStatus::None => ("nothing missing", "good"),
         VerdictStatus::Calibration => ("calibration", "good"),
         VerdictStatus::Effect => ("effects", "caution"),
-        VerdictStatus::Unknown => ("no name", "bad"),
+        VerdictStatus::Unknown => ("unexplained", "bad"),
     };
     CaseView {
         id: &case.id,

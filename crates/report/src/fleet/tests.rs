@@ -29,7 +29,7 @@ fn page(result: &Value) -> String {
 fn it_says_which_effects_where_and_what_is_odd() {
     let html = crate::glossary::unexplained(&page(&small()));
     for part in [
-        "Of 3 diagnoses, 2 name effects, 0 are a matter of calibration, 1 find nothing beyond the noise",
+        "Of 3 diagnoses, 2 name effects, 0 find only wrong coefficients, 1 find nothing beyond the noise",
         "Most often: dry friction in 2.",
         "One case gave no answer",
         "<th scope=\"row\" class=\"words\">Dry friction</th><td>2</td><td>1</td>",

@@ -70,8 +70,8 @@ fn free_runs(
         shaded: vec![],
     };
     let explanation = format!(
-        "Dots are the test record {record}, which no method saw; lines predict it freely from its warm-up. Drawn are the \
-         methods of least error; predictions.csv has all."
+        "Dots are the test record {record}, which no method saw; lines are free runs from its warm-up. Only \
+         the methods with the smallest errors are drawn; predictions.csv has all."
     );
     figure(format!("{id}-runs"), format!("Free runs: {}", named(problem)), &explanation, &plot, table)
 }
@@ -144,7 +144,8 @@ fn torques(
         cells.extend([row.position, row.velocity, row.input, row.truth, row.learned].map(number));
         cells
     });
-    let explanation = "At states that the test records visit: dots on zero have learned the torque exactly.";
+    let explanation = "Torque at the states that the test records visit: a method with all dots on zero has \
+                       learned it exactly.";
     figure(format!("{id}-torque"), format!("Learned torque: {}", named(problem)), explanation, &plot, table)
 }
 
@@ -170,6 +171,6 @@ fn losses(id: &str, problem: &LearnProblem, rows: &[&LearnRow], learning: &Learn
     let table = csv(&["method", "step", "phase", "train"], &own, |row| {
         vec![row.method.clone(), row.step.to_string(), row.phase.clone(), number(row.train)]
     });
-    let explanation = "Jumps come where the pieces that are fitted grow longer, or a term is taken out.";
+    let explanation = "Jumps occur where the fitted pieces grow longer or a term is removed.";
     figure(format!("{id}-training"), format!("Training: {}", named(problem)), explanation, &plot, table)
 }

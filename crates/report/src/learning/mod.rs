@@ -29,13 +29,16 @@ const COLUMNS: [&str; 9] = [
 ];
 
 /// Explanation of the tables.
-const READING: &str = "Each method was given the start of a test record, its warm-up, and predicted the rest without seeing another \
-     observation. The free run’s error is the root mean square over all test records, in their unit and over the sensor’s \
-     noise; the horizon is the median time until the error, over a quarter of a period, passes three times the noise. One \
-     step is the error a sample ahead of a moving past. The torque’s error is relative to what the nominal simulator lacks. \
-     Baselines know nothing, or what a simulator knows; the true law fitted exactly is what nobody can do better. \
-     Below these stand the learners’ models with everything that they learned at zero, and given noise in place of past and \
-     input: an error that stays small says that what is missing contributed nothing.";
+const READING: &str = "Each method was given the start of a test record, its warm-up, and predicted the rest \
+                       without further observations. The free run’s error is the root mean square over all \
+                       test records, in their unit and divided by the sensor’s noise; the horizon is the \
+                       median time until the error over a quarter of a period exceeds three times the noise. \
+                       One step is the error of predictions one sample ahead of the measured past. The \
+                       torque’s error is relative to the torque that the nominal simulator lacks. Baselines \
+                       use no knowledge, or that of a simulator; no method can beat the true law with \
+                       exactly fitted coefficients. The last rows are the learners’ models with everything \
+                       that they learned set to zero, and with noise in place of past and input: if the \
+                       error stays small, the removed part contributed nothing.";
 
 /// One coefficient of a learned law.
 struct CoefficientView<'a> {
@@ -185,8 +188,8 @@ fn headline(result: &LearnResult) -> Verdict {
         _ => (Tone::Caution, "Learning helps on some data sets"),
     };
     let sentence = format!(
-        "On {better} of {} data sets some learner predicts records it never saw better than persistence, the nominal and \
-         the recalibrated simulator, and a linear autoregression.",
+        "On {better} of {} data sets, at least one learner predicts unseen records better than persistence, \
+         the nominal and the recalibrated simulator, and a linear autoregression.",
         present.len()
     );
     Verdict { tone, label, sentence }
@@ -194,5 +197,5 @@ fn headline(result: &LearnResult) -> Verdict {
 
 fn origin(result: &LearnResult) -> Origin {
     let origins = result.problems.iter().map(|problem| problem.origin);
-    verdict::origin_of_all(origins, Some("Each section says that of its data set."))
+    verdict::origin_of_all(origins, Some("Each section states the origin of its data set."))
 }

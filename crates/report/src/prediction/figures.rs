@@ -160,9 +160,10 @@ fn log_amplitude(
         series: peaks.series(|_, value| value),
         shaded: peaks.shaded(),
     };
-    let explanation = "Fitted to the gray peaks, carried on over the shaded stretch that no method saw. Drawn \
-                       are the best exponential and the three methods of least error beyond that do not draw \
-                       the same line; of a simulation its first draw.";
+    let explanation = "Methods are fitted to the gray peaks and extrapolate over the shaded stretch, which \
+                       no method saw. The plot shows the best exponential and, of the methods with different \
+                       lines, the three with the smallest errors there; for a simulation, it shows the first \
+                       draw.";
     figure(
         format!("{anchor}-envelope"),
         format!("Envelope: {}", named(problem)),
@@ -180,8 +181,9 @@ fn deviations(anchor: &str, problem: &ProblemRow, peaks: &Peaks<'_>) -> Option<F
         series: peaks.series(less),
         shaded: peaks.shaded(),
     };
-    let explanation = "The same with the best exponential taken away: where the envelope bends, the peaks leave \
-                       zero, and a method that has found the bend goes with them into the shaded stretch.";
+    let explanation = "The same with the best exponential subtracted: where the envelope bends, the peaks \
+                       depart from zero, and a method that has found the bend follows them into the shaded \
+                       stretch.";
     figure(
         format!("{anchor}-deviations"),
         format!("Deviations: {}", named(problem)),
@@ -232,8 +234,9 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
         id: format!("{anchor}-errors").into(),
         title: title.into(),
         explanation:
-            "A dot left of its ring predicts between other peaks better than beyond the last one; a \
-                      ring left of the dashed line predicts beyond it better than the best exponential."
+            "If a dot is left of its ring, the method predicts better between other peaks than beyond the \
+             last one; if a ring is left of the dashed line, it predicts better beyond the last peak than \
+             the best exponential."
                 .to_owned(),
         notes,
         drawing,

@@ -7,18 +7,19 @@ use crate::tables::{ScoreRow, ScoreTable, whole};
 
 /// Explanation of these tables.
 pub(super) const READING: [&str; 4] = [
-    "Errors are root mean squares of predicted less observed ln A over the held-out peaks, of a simulation the \
-     median over the draws that all methods were fitted on; Â/A is the same as a relative error of the amplitude, where a motion predicted to \
-     be at rest misses by 100 %. “To truth” is the error against the noise-free ln A. Rows stand in the order \
-     of the error beyond.",
-    "ln p is the mean logarithm of the density that a method states for a held-out ln A, Gaussian with its own \
-     standard deviation: higher is better, and a difference of 0.1 is 10 % of density a peak. “In 95 %” is the \
-     share of held-out peaks within 1.96 stated standard deviations, with a 95 % interval of that share by \
-     Korn and Graubard, peaks of one draw or block counting as one cluster.",
-    "“Projected slope in λ’s interval” counts the draws in which the stated 95 % interval of λ holds minus the \
-     least-squares slope of the noise-free ln A over the peaks fitted, “viscous λ” those in which it holds λ of \
-     the law’s viscous part. On an envelope that is no exponential these are different quantities, and an \
-     interval can be right about one of them only. Intervals of these shares are by Clopper and Pearson.",
+    "Errors are root mean squares of predicted minus observed ln A over the held-out peaks; for a \
+     simulation, the median over the draws that all methods were fitted to. Â/A is the same error as a \
+     relative error of the amplitude; a predicted state of rest has an error of 100 %. “To truth” is the \
+     error against the noise-free ln A. Rows are sorted by the error beyond the last fitted peak.",
+    "ln p is the mean logarithm of the density that a method states for a held-out ln A, Gaussian with its \
+     own standard deviation: higher is better, and a difference of 0.1 is a factor of 1.1 in the density per \
+     peak. “In 95 %” is the share of held-out peaks within 1.96 stated standard deviations, with a 95 % \
+     interval of that share by Korn and Graubard, peaks of one draw or block counting as one cluster.",
+    "“Projected slope in λ’s interval” counts the draws in which the stated 95 % interval of λ contains the \
+     projected slope (minus the least-squares slope of the noise-free ln A over the fitted peaks). “Viscous \
+     λ” counts those in which it contains λ of the law’s viscous part. If the envelope is not exponential, \
+     these are different quantities, and an interval can be right about only one of them. Intervals of these \
+     shares are by Clopper and Pearson.",
     "“Against exponential” counts draws, or blocks of peaks, in which a method’s mean square error is smaller \
      than that of the best exponential (closed-form least squares on the same peaks), and in which it is \
      larger; ties to six digits are left out. p is of the two-sided sign test, adjusted by Holm’s method for \

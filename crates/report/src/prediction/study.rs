@@ -25,8 +25,9 @@ pub(super) fn facts(study: &ProblemStudy) -> Vec<Fact> {
             fact(
                 "Draws",
                 format!(
-                    "{}, for methods with random numbers of their own the first {}; errors and densities are of \
-                     the first {1} for all, coverage and sign tests of all that a method has",
+                    "{}; methods with random numbers of their own use the first {}. Errors and densities of \
+                     all methods are over the first {1}; coverage and sign tests are over all draws of a \
+                     method",
                     law.draws[0], law.draws[1]
                 ),
             ),
@@ -73,9 +74,9 @@ pub(super) fn scored(row: &PredictionRow) -> Option<&MethodScores> {
 
 pub(super) fn held_out(splits: &SplitSummary) -> String {
     format!(
-        "Inside: of every {} blocks of {} successive peaks one is held out, never the first or the last block; a record is \
-         fitted once for each such choice, and each draw of a simulation with the next choice in turn. Beyond: the last \
-         {} % of the peaks are held out.",
+        "Inside: one of every {} blocks of {} successive peaks is held out, but never the first or the last \
+         block; a record is fitted once for each such choice, and each draw of a simulation uses the next \
+         choice in turn. Beyond: the last {} % of the peaks are held out.",
         splits.every,
         splits.block_peaks,
         format::fixed(100.0 * splits.last_share, 0)
@@ -116,5 +117,5 @@ pub(super) fn headline(result: &PredictionResult) -> Verdict {
 
 pub(super) fn origin(result: &PredictionResult) -> Origin {
     let origins = studied(result).map(|row| row.origin);
-    verdict::origin_of_all(origins, Some("Each section says that of its problem."))
+    verdict::origin_of_all(origins, Some("Each section states the origin of its problem."))
 }

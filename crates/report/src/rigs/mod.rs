@@ -121,7 +121,7 @@ fn origin(result: &RigsResult) -> Origin {
 fn warnings(result: &RigsResult) -> Vec<String> {
     let mut warnings = Vec::new();
     if !result.complete {
-        warnings.push("It was interrupted: some rigs were not looked at.".to_owned());
+        warnings.push("It was interrupted: some rigs were not diagnosed.".to_owned());
     }
     let mut origins: Vec<&str> = result.rigs.iter().map(|rig| rig.origin.name()).collect();
     origins.sort_unstable();
@@ -136,7 +136,8 @@ fn next(result: &RigsResult) -> Vec<String> {
     let mut steps: Vec<String> = Vec::new();
     if all_coefficients(result).any(|row| row.agree == Some(false)) {
         steps.push(
-            "Coefficients that differ belong to the single rig: look there for what was built or set up differently."
+            "A coefficient that differs is a property of the single rig: look for what was built or set up \
+             differently there."
                 .to_owned(),
         );
     }
@@ -144,8 +145,8 @@ fn next(result: &RigsResult) -> Vec<String> {
         (1..result.rigs.len()).contains(&class.present_in.len()) && Standing::of(class.probability).is_some()
     }) {
         steps.push(
-            "Classes that only some rigs show: record these rigs once more before you believe them, since what soaks up a \
-             left-over on one record seldom comes back on the next."
+            "Only some rigs show certain classes: record these rigs again before you believe them. An effect \
+             that only absorbs a residual of one record seldom appears in the next."
                 .to_owned(),
         );
     }

@@ -102,16 +102,17 @@ fn gaps(table: &RunTable) -> Option<Figure> {
             _ => None,
         },
     };
-    let explanation = "One row for each setting; runs that differ in their seed alone share one. Each decade to the \
-                       left is one more digit of ζ shared with closed-form least squares on the same envelope: how \
-                       well a method solves the fit, and nothing about the oscillator.";
+    let explanation = "One row for each setting; runs that differ only in their seed share a row. Each \
+                       decade to the left is one more digit of ζ shared with closed-form least squares on \
+                       the same envelope. The distance shows how well a method solves the fit; it says \
+                       nothing about the oscillator.";
     let table = csv(&["setting", "median_error_percent", "worst_error_percent", "runs"], &groups, |group| {
         vec![group.name.clone(), number(middle(group)), number(worst(group)), group.rows.len().to_string()]
     });
     let mut notes = Vec::new();
     if groups.iter().any(|group| middle(group) < LEAST_PERCENT || worst(group) < LEAST_PERCENT) {
         notes.push(format!(
-            "Distances below {}, where the digits of a double end, are drawn there, zero among them.",
+            "Distances below {}, the precision of a double, are drawn at this value, including zero.",
             format::percent(LEAST_PERCENT)
         ));
     }

@@ -83,7 +83,7 @@ fn origin(table: &RunTable) -> Origin {
     let stated = table.rows.iter().filter_map(|row| row.origin);
     verdict::origin_of_all(
         stated,
-        Some("Some were measured, others simulated or not said to be either: table.csv says which."),
+        Some("Some were measured; others were simulated or have no stated origin: see table.csv."),
     )
 }
 
@@ -93,7 +93,7 @@ fn warnings(table: &RunTable) -> Vec<String> {
         return Vec::new();
     }
     vec![format!(
-        "{} of the rows are of interrupted runs: what they had reached is no result.",
+        "{} of the rows belong to interrupted runs: their values are not results.",
         whole(unfinished)
     )]
 }

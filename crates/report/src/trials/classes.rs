@@ -26,7 +26,7 @@ pub fn class_rows(groups: &[ClassScores]) -> Vec<(String, Vec<Proportion>)> {
     let more: [(&str, Score); 4] = [
         ("names whose class acts", Box::new(|own| own.precision)),
         ("set of classes right", Box::new(|own| own.set)),
-        ("`unknown`, or an allowed class, for a law without a name", Box::new(|own| own.unknown)),
+        ("`unknown`, or an allowed class, for an unlisted law", Box::new(|own| own.unknown)),
         ("false alarms where nothing is missing", Box::new(|own| own.false_alarms)),
     ];
     scores.extend(more.map(|(name, score)| (name.to_owned(), score)));
@@ -60,10 +60,11 @@ pub(super) fn section(result: &TrialsResult) -> Option<Section> {
     }
     Some(Section {
         id: "classes",
-        title: "Several effects at once: what is named of what acts",
+        title: "Several effects at once: which of them are named",
         sentences: vec![
-            "Effects that explain alike are one class. Sizes are root mean squares of what no recalibration absorbs, as a \
-             multiple of the noise. A class to which a law outside the vocabulary belongs counts neither for nor against."
+            "Effects that explain a record alike form one class. Sizes are root mean squares of the part \
+             that no recalibration absorbs, in units of the noise. The class of a law outside the vocabulary \
+             is not counted."
                 .to_owned(),
         ],
         grids: grids.into_iter().filter(|grid| !grid.rows.is_empty()).collect(),
@@ -89,10 +90,10 @@ fn inclusion(title: String, rows: &[InclusionRow]) -> Grid {
         title,
         corner: "",
         columns: [
-            "Named where it acts",
-            "Acts where named",
-            "Stated where it acts",
-            "Stated where it does not",
+            "Named if it acts",
+            "Acts if named",
+            "Probability if it acts",
+            "Probability if it does not",
         ]
         .map(str::to_owned)
         .to_vec(),

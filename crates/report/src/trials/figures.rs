@@ -18,7 +18,7 @@ fn diagonal(label: &str) -> Series {
 pub(super) fn reliability(result: &TrialsResult) -> Option<Figure> {
     let shown: Vec<&Reliability> =
         result.reliability.iter().filter(|study| study.subject != "confidence, not mapped").collect();
-    let mut series = vec![diagonal("stated as found")];
+    let mut series = vec![diagonal("perfect calibration")];
     for (index, study) in shown.iter().enumerate() {
         series.push(Series {
             label: format!("{}, {}", study.subject, study.banks),
@@ -48,7 +48,7 @@ pub(super) fn reliability(result: &TrialsResult) -> Option<Figure> {
     }
     let plot = Plot {
         x: Axis::linear("stated probability, mean of a bin"),
-        y: Axis::linear("share that was so"),
+        y: Axis::linear("share that came true"),
         series,
         shaded: Vec::new(),
     };
@@ -64,8 +64,8 @@ pub(super) fn unknown(result: &TrialsResult) -> Option<Figure> {
         return None;
     }
     let plot = Plot {
-        x: Axis::linear("called unknown, of cases with a name or nothing missing"),
-        y: Axis::linear("called unknown, of cases without a name"),
+        x: Axis::linear("share called unknown: cases of a known effect or none"),
+        y: Axis::linear("share called unknown: cases of an unknown effect"),
         series: vec![
             diagonal("chance"),
             Series {
@@ -78,6 +78,6 @@ pub(super) fn unknown(result: &TrialsResult) -> Option<Figure> {
         shaded: Vec::new(),
     };
     let table = csv(&["false_alarms", "hits"], curve, |[alarms, hits]| vec![number(*alarms), number(*hits)]);
-    let explanation = "Receiver operating characteristic over all thresholds, sizes together.";
+    let explanation = "Receiver operating characteristic over all thresholds, with all sizes together.";
     figure("unknown-curve", "Unknown against named", explanation, &plot, table)
 }

@@ -123,10 +123,11 @@ pub(super) fn accuracy(result: &TrialsResult) -> Section {
         id: "accuracy",
         title: "Accuracy by effect and size",
         sentences: vec![
-            "The size of a hidden effect is the part of its trace that recalibration cannot absorb, in units of the noise; of two \
-             effects it is that of the smaller. The class of an answer is its first name with all that the answer calls \
-             indistinguishable from it. Where nothing is missing, no name is the right first name; where the hidden effect was \
-             excluded, the right answer is unknown."
+            "The size of a hidden effect is the size of the part of its trace that recalibration cannot \
+             absorb, in units of the noise; for two effects, it is that of the smaller one. The class of an \
+             answer is its first name together with all effects that the answer calls indistinguishable from \
+             it. If nothing is missing, the right answer names nothing; if the hidden effect was excluded, \
+             the right answer is unknown."
                 .to_owned(),
         ],
         grids,
@@ -162,13 +163,13 @@ pub(super) fn confusion(result: &TrialsResult) -> Section {
         .map(|row| format!("{} in {} of {}", row.id, row.named.count, row.named.of))
         .collect();
     let mut sentences = vec![
-        "Cases by what was hidden (rows) and what was named first (columns), of cases with at most one hidden effect; shaded \
-         by the share of the row."
+        "Cases with at most one hidden effect, by hidden effect (rows) and by the effect named first \
+         (columns), shaded by the share of the row."
             .to_owned(),
     ];
     if !nuisances.is_empty() {
         sentences.push(format!(
-            "Effects that the records of every bank have in common count neither for nor against an answer. They were named: {}.",
+            "Effects that the records of every bank have in common are not scored. They were named: {}.",
             nuisances.join(", ")
         ));
     }

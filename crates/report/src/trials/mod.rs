@@ -66,7 +66,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
                 Origin {
                     class: "simulated",
                     label: "Cases with a known truth",
-                    note: "Made by the program; where measured records or a physics engine take part, the bank says so.",
+                    note: "The program made these cases. The name of a bank states whether it uses measured \
+                           records or a physics engine.",
                 },
             )
         },
@@ -89,7 +90,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
         failure_note: if shown < result.failures.len() {
             format!("The first {shown} of {}; cases.csv has all.", result.failures.len())
         } else {
-            format!("{} of {} cases. The last column diagnoses one alone.", shown, result.cases)
+            format!(
+                "{} of {} cases. The command in the last column diagnoses a single case.",
+                shown, result.cases
+            )
         },
         failures: result.failures.iter().take(shown).map(failure).collect(),
     };
@@ -172,7 +176,7 @@ fn next(result: &TrialsResult) -> Vec<String> {
     let first = result.failures.first();
     first
         .map(|case| {
-            format!("Diagnose a case that was answered wrongly, {}, alone: {}", case.id, case.command)
+            format!("Diagnose a single case that was answered wrongly, {}: {}", case.id, case.command)
         })
         .into_iter()
         .collect()

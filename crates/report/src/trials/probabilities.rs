@@ -33,9 +33,10 @@ pub(super) fn section(result: &TrialsResult) -> Section {
         id: "probabilities",
         title: "Calibration of the stated probabilities",
         sentences: vec![
-            "The expected calibration error is the mean distance between stated probability and observed frequency over ten bins \
-             of equal count. Scatter alone makes it larger than zero: the column “By chance alone” has its mean for \
-             probabilities that are exactly right. Its interval, by the bootstrap, is biased upward for the same reason."
+            "The expected calibration error is the mean distance between stated probability and observed \
+             frequency over ten bins of equal count. Scatter alone makes it larger than zero: the column “By \
+             chance alone” is its mean for exactly correct probabilities. Its bootstrap interval is biased \
+             upward for the same reason."
                 .to_owned(),
             mapping,
         ],

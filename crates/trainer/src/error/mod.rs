@@ -80,8 +80,8 @@ pub(crate) enum TrainerError {
     #[error("{file}: system {system}, record {record}: {source}")]
     Generation { file: String, system: usize, record: usize, source: GenerationError },
     #[error(
-        "{record}: nothing to compare it with: name the simulator as it is with --nominal FILE; where there is none, \
-         `trainer init {record}` makes a first guess of one and prints the command to continue with"
+        "{record}: nothing to compare it with: name the nominal simulator with --nominal FILE; if there is \
+         none, `trainer init {record}` makes a first guess of one and prints the command to continue with"
     )]
     NoNominal { record: String },
     #[error("{folder} is not empty; nothing that exists is overwritten: name another folder with --out")]

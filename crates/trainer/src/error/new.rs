@@ -13,8 +13,8 @@ pub(crate) enum NewError {
     #[error("there is a learner `{name}` already, or a file of its name; choose another name")]
     Taken { name: String },
     #[error(
-        "{folder} is not in a checkout of Ringdown, which a new estimator becomes a part of; change into one, or name it with \
-         --workspace DIR"
+        "{folder} is not in a checkout of Ringdown, to which a new estimator is added; change into one, or \
+         name it with --workspace DIR"
     )]
     NoCheckout { folder: String },
     #[error("{file}: cannot be read: {reason}")]

@@ -6,8 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(crate) enum ResumeError {
     #[error(
-        "{folder}: there is no run in it to resume or to run again: its events.jsonl does not tell how one started; name \
-         the folder of a run"
+        "{folder}: there is no run in it to resume or to run again: its events.jsonl does not state how a \
+         run started; name the folder of a run"
     )]
     NoRun { folder: String },
     #[error(

@@ -51,8 +51,9 @@ pub(crate) enum SweepCommandError {
     )]
     HalvedTest { measure: String },
     #[error(
-        "{what} chooses by the results of all trials, so that it cannot be cut into shares beforehand; leave out --shard \
-         and --launcher and give --threads N, or take --search random without --halving, whose points are known beforehand"
+        "{what} chooses by the results of all trials, so it cannot be split into shares beforehand; leave \
+         out --shard and --launcher and give --threads N, or take --search random without --halving, whose \
+         points are known beforehand"
     )]
     Shares { what: &'static str },
     #[error(

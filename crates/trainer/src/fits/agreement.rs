@@ -58,15 +58,16 @@ fn name(row: &PipelineRow) -> String {
 /// Recommends the answer to believe, with the reason.
 fn belief(own: &PipelineRow, data: &DataSummary) -> String {
     let why = format!(
-        "it takes the samples as they are, on the clock that the record speaks for ({}); the paper's interpolates \
-         between the stamps",
+        "it uses the samples as they are, on the clock that the record supports ({}); the paper's pipeline \
+         interpolates between the stamps",
         data.believed_clock
     );
     if own.pipeline == "recommended" && own.clock == data.believed_clock {
-        format!("Believe the one in force: {why}.")
+        format!("Use the one in force: {why}.")
     } else {
         format!(
-            "Believe the recommended pipeline on the {} clock (data.clock=auto envelope.pipeline=recommended): {why}.",
+            "Use the recommended pipeline on the {} clock (data.clock=auto envelope.pipeline=recommended): \
+             {why}.",
             data.believed_clock
         )
     }

@@ -164,7 +164,7 @@ fn refused(problem: Problem, script: &Path, command: &str, before: &[LaunchedArr
     let jobs: Vec<String> = before.iter().filter_map(|array| array.job).map(|job| job.to_string()).collect();
     let submitted = match jobs.is_empty() {
         true => String::new(),
-        false => format!("; job {} before it is submitted and goes on", jobs.join(", ")),
+        false => format!("; job {}, submitted before it, goes on", jobs.join(", ")),
     };
     LaunchError::Refused { script, complaint, submitted }
 }
@@ -183,7 +183,7 @@ fn submit(words: &[String]) -> Result<u64, Problem> {
     // With `--parsable`, the output is the number, followed by a semicolon and the cluster.
     let text = said(&output.stdout);
     let number = text.split(';').next().and_then(|number| number.trim().parse().ok());
-    number.ok_or_else(|| Problem::Refused(format!("it answered `{text}`, not with the number of a job")))
+    number.ok_or_else(|| Problem::Refused(format!("it answered `{text}`, which is not a job number")))
 }
 
 fn summary(result: &LaunchResult, part: &str) -> String {
@@ -195,7 +195,7 @@ fn summary(result: &LaunchResult, part: &str) -> String {
         let job = |array: &LaunchedArray| array.job.map(|job| job.to_string());
         let jobs: Vec<String> = result.arrays.iter().filter_map(job).collect();
         lines.push(format!("submitted as job {}: {parts} in {shares}", jobs.join(", ")));
-        lines.push(format!("logs: {folder}/slurm; what is there so far: trainer report {folder}"));
+        lines.push(format!("logs: {folder}/slurm; results so far: trainer report {folder}"));
     } else {
         lines.push(format!("{script} is written for {parts} in {shares}; it is submitted with"));
         lines.extend(result.arrays.iter().map(|array| array.command.clone()));

@@ -23,7 +23,7 @@ pub enum TrialError {
     #[error(transparent)]
     Generation(#[from] GenerationError),
     /// The output of the measurement chain is no valid record.
-    #[error("what is left is no record: {0}")]
+    #[error("the remaining samples are not a record: {0}")]
     Fault(#[from] Fault),
     /// An external file of a bank cannot be read.
     #[error(transparent)]

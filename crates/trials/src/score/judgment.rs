@@ -82,11 +82,13 @@ pub(crate) const BANKS: [Bank; 13] = [
 ];
 
 /// Definition of `right` in words, for the results.
-pub(crate) const RIGHT_MEANS: &str = "Effects of the measurement chain that come with records of every bank alike are struck \
-    from an answer first. Where nothing is missing, an answer is right that names nothing, be its status none or \
-    calibration. Where effects are hidden, its status has to be `effect` and its set exactly the hidden one. Where the hidden \
-    effect was not to be considered or lies outside the vocabulary, `unknown` is right, and so are names of classes only \
-    that the truth allows; where such a law is small, whatever names no other class. A case without an answer is wrong. Stated confidence is the probability of being right in this sense.";
+pub(crate) const RIGHT_MEANS: &str = "Effects of the measurement chain that the records of every bank have \
+     in common are first removed from an answer. If nothing is missing, an answer is right if it names \
+     nothing, with status none or calibration. If effects are hidden, its status must be `effect` and its \
+     set exactly the hidden one. If the hidden effect was not to be considered or lies outside the \
+     vocabulary, `unknown` is right, and so is an answer that names only classes that the truth allows; if \
+     such a law is small, every answer that names no other class is right. A case without an answer is \
+     wrong. The stated confidence is the probability of being right in this sense.";
 
 impl<'a> Judgment<'a> {
     pub(crate) fn of(case: &'a AnsweredCase) -> Self {

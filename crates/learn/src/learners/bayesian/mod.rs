@@ -65,7 +65,7 @@ const FIELDS: &[Field] = &[
         kind: Value::Integer { min: 100, max: 10_000_000 },
         default: Default::Integer(3_000),
         unit: "samples",
-        meaning: "Most training samples; of more, evenly chosen pieces.",
+        meaning: "Most training samples; if there are more, evenly spaced pieces are used.",
         ..PLAIN
     },
     Field {

@@ -75,7 +75,7 @@ const FIELDS: &[Field] = &[
         kind: Value::Integer { min: 100, max: 10_000_000 },
         default: Default::Integer(6_000),
         unit: "samples",
-        meaning: "Most training samples; of more, evenly chosen windows.",
+        meaning: "Most training samples; if there are more, evenly spaced windows are used.",
         ..PLAIN
     },
     Field {

@@ -67,7 +67,7 @@ const FIELDS: &[Key] = &[
         key: "parsimony",
         kind: Value::Float { min: 0.0, max: 10.0 },
         default: Default::Float(0.02),
-        meaning: "Share of the error that one node has to take away to be preferred in breeding.",
+        meaning: "Share by which one more node must lower the error to be preferred in breeding.",
         ..PLAIN
     },
     Key {
@@ -89,7 +89,8 @@ const FIELDS: &[Key] = &[
         kind: Value::Integer { min: 100, max: 10_000_000 },
         default: Default::Integer(6_000),
         unit: "samples",
-        meaning: "Most training samples of the refit to trajectories; of more, evenly chosen pieces.",
+        meaning: "Most training samples of the refit to trajectories; if there are more, evenly spaced \
+                  pieces are used.",
         ..PLAIN
     },
     Key {

@@ -123,7 +123,7 @@ fn after(stage: &str) -> &'static str {
         "calibration" => "searching for sets of effects",
         "search" => "fitting the best sets on every sample",
         "fits" => "predicting held-out parts",
-        "held-out parts" => "asking what is left over",
-        _ => "explaining what was found",
+        "held-out parts" => "testing the residual for further effects",
+        _ => "describing the result",
     }
 }

@@ -60,7 +60,7 @@ fn classes(result: &DiagnosisResult) -> String {
         let left = significant(left.over_noise, 3);
         let text =
             format!("{} of the gap; the repaired simulator's error is {left} × noise", format::share(share));
-        rows.push(vec!["no name".to_owned(), String::new(), String::new(), text]);
+        rows.push(vec!["unexplained".to_owned(), String::new(), String::new(), text]);
     }
     let found = table(&["", "class of effects", "probability", ""], rows);
     [Some(found), unlikely].into_iter().flatten().collect::<Vec<_>>().join("\n")
@@ -86,23 +86,24 @@ fn gap(result: &DiagnosisResult) -> String {
             if nothing {
                 "there is no gap to close".to_owned()
             } else if high - low >= 1.0 {
-                "the gap is too small beside the noise to say how much of it closes".to_owned()
+                "the gap is too small compared with the noise to state its closure".to_owned()
             } else {
                 format!("{} of the whole gap", closed(&gap.closure))
             },
         ),
-        row("ceiling: a free torque on top", gap.ceiling, String::new()),
+        row("ceiling: a free torque added", gap.ceiling, String::new()),
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
     if let Some(note) =
         rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same && !nothing && high - low < 1.0)
     {
         note.push_str(&format!(
-            ", {} of what recalibration leaves",
+            ", {} of the gap after recalibration",
             share_with_interval(&gap.closure_of_recalibrated)
         ));
     }
-    let told = "× noise: the RMS over that of the sensor's noise; 1 is as good as a simulator can get";
+    let told = "× noise: the RMS divided by that of the sensor's noise; 1 is the best that a simulator can \
+                reach";
     format!("{}\n{told}", table(&["held-out error", "RMS", "× noise", ""], rows))
 }
 
@@ -125,9 +126,9 @@ fn apart(result: &DiagnosisResult) -> String {
         }));
     }
     let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
-        let enough = if distance < DISTINCT_DISTANCE { ", too little by itself" } else { "" };
+        let enough = if distance < DISTINCT_DISTANCE { ", too small by itself" } else { "" };
         format!(
-            " (predicted to set them {} noise standard deviations apart{enough})",
+            " (predicted distance between them: {} noise standard deviations{enough})",
             significant(distance, 2)
         )
     });
@@ -225,7 +226,8 @@ fn chain(result: &DiagnosisResult) -> String {
     }
     if result.samples_used < 0.9999 {
         lines.push(format!(
-            "  {} of the samples were used: every n-th as far as a swing stays well sampled, then whole stretches, evenly spaced",
+            "  {} of the samples were used: every n-th sample, as long as a swing stays well sampled, and \
+             then evenly spaced stretches",
             format::share(result.samples_used)
         ));
     }

@@ -196,8 +196,8 @@ fn apart(each: &[EachLog]) -> Option<String> {
     (*fast > ANOTHER_SYSTEM * slow).then(|| {
         let [slow, fast] = [slow, fast].map(|frequency| significant(*frequency, 3));
         format!(
-            "{slowest} swings at {slow} Hz and {fastest} at {fast} Hz, which records of one system hardly do: diagnose those \
-             of each system by themselves"
+            "{slowest} swings at {slow} Hz and {fastest} at {fast} Hz, too far apart for records of one \
+             system: diagnose each system separately"
         )
     })
 }
@@ -294,7 +294,7 @@ impl Found {
             ]
         });
         let heads = ["log", "samples", "natural frequency, Hz", "damping ratio"];
-        format!("{}\n\nthe surest of them: ", table(&heads, rows.collect()))
+        format!("{}\n\nthe most certain of them: ", table(&heads, rows.collect()))
     }
 
     fn duration_s(&self) -> f64 {
@@ -316,7 +316,9 @@ impl Found {
     fn growth(&self) -> Option<String> {
         let damping = self.surest.oscillator.damping;
         (damping.value < 0.0 && is_significant(damping)).then(|| {
-            "the swing grows: something feeds it, which no passive simulator does; its damping is written as 0".to_owned()
+            "the swing grows: something adds energy to it, which no passive simulator can do; the written \
+             damping is 0"
+                .to_owned()
         })
     }
 
@@ -339,8 +341,8 @@ impl Found {
         let cycles = frequency * self.duration_s();
         (cycles < FEW_CYCLES).then(|| {
             format!(
-                "the record shows {cycles:.1} cycles: damping and what a simulator lacks show in how swings follow one another; \
-                 give a record of ten cycles or more"
+                "the record shows {cycles:.1} cycles, too few to see damping or what a simulator lacks; give \
+                 a record of ten cycles or more"
             )
         })
     }

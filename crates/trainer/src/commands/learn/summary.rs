@@ -11,9 +11,10 @@ const HEADER: [&str; 9] =
 /// Formats the result for the terminal.
 pub(super) fn summary(result: &LearnResult, folder: &Path) -> String {
     let mut parts = vec![
-        "errors are RMS on records never seen, in the record's unit; the horizon ends where the error passes three times \
-         the noise; the torque's error is relative to what the nominal simulator lacks; at-zero is a learner's model with everything that \
-         it learned at zero, on-noise the model given noise in place of past and input"
+        "errors are RMS on records never seen, in the record's unit; the horizon ends where the error passes \
+         three times the noise; the torque's error is relative to what the nominal simulator lacks; at-zero \
+         is a learner's model with everything that it learned set to zero; on-noise is the model with noise \
+         in place of past and input"
             .to_owned(),
     ];
     parts.extend(result.problems.iter().map(|problem| described(problem, result)));

@@ -230,8 +230,8 @@ fn contributions(result: &ComparisonResult) -> String {
     let header = [
         "method",
         "may differ from least squares",
-        "learned part at zero, error %",
-        "noise for its input, error %",
+        "learned part set to zero, error %",
+        "noise as its input, error %",
     ];
     format!("{}\n{}", table(&header, rows), report::ABLATION_READING)
 }
@@ -240,7 +240,7 @@ fn comparison_remarks(result: &ComparisonResult) -> String {
     let cautions = result
         .cautions
         .iter()
-        .map(|caution| format!("not borne out: \u{201c}{}\u{201d}. {}", caution.statement, caution.finding));
+        .map(|caution| format!("not supported: \u{201c}{}\u{201d}. {}", caution.statement, caution.finding));
     clock(&result.data)
         .into_iter()
         .chain(warned(&result.oracle))
@@ -277,8 +277,10 @@ fn pipelines(pipelines: &[PipelineRow]) -> String {
         })
         .collect();
     let header = ["", "pipeline", "clock", "peaks", "ω rad/s", "λ 1/s", "ζ", "R²"];
-    let mut text =
-        format!("the record by closed-form least squares, each way (* in force):\n{}", table(&header, rows));
+    let mut text = format!(
+        "closed-form least squares on the record, by pipeline and clock (* in force):\n{}",
+        table(&header, rows)
+    );
     for row in pipelines {
         if let PipelineOutcome::Failed { reason } = &row.outcome {
             text.push_str(&format!("\n{}, {}: {reason}", row.pipeline, row.clock));

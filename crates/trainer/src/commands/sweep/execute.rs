@@ -181,7 +181,7 @@ fn make(sweep: &FrozenSweep, (line, config): Job<'_>, making: &Making, remark: &
         Ok(Err(_)) if making.cancel.is_requested() => (SweepState::Interrupted, None),
         Ok(Err(error)) => (SweepState::Failed, Some(error.to_string())),
         Err(_) => {
-            let message = "the program panicked; what it said stands above (a fault, please report it)";
+            let message = "the program panicked; its message is above (a bug, please report it)";
             (SweepState::Failed, Some(message.to_owned()))
         }
     };
@@ -279,7 +279,9 @@ fn begun_before(
         Ok(Some(taken_up))
     };
     let before = open().unwrap_or_else(|error: TrainerError| {
-        remark(&format!("{name} cannot be gone on with, so the run begins again beside it: {error}"));
+        remark(&format!(
+            "{name} cannot be resumed, so the run starts again in a new folder beside it: {error}"
+        ));
         None
     });
     before.map(|before| (name, before))

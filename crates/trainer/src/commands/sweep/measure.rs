@@ -21,8 +21,8 @@ pub(crate) fn warning(measure: &str) -> Option<String> {
     let is_test = measure.split('.').any(|part| part == "test");
     is_test.then(|| {
         format!(
-            "The choice was made on the test part ({measure}), so that its error there is no longer that of records never \
-             seen: judge the best on others, or search by validation.over_noise."
+            "The best trial was chosen on the test part ({measure}), so its error there is no longer an \
+             error on unseen records: judge it on other records, or search by validation.over_noise."
         )
     })
 }

@@ -224,7 +224,8 @@ fn sentence(rigs: &[Answered], class: &SharedClassRow) -> String {
         let absent = rigs.iter().map(|rig| &rig.name).filter(|name| !class.present_in.contains(name));
         let absent: Vec<String> = absent.cloned().collect();
         format!(
-            "{title}: by their own records in {}, not in {} (probability that all have it {probability})",
+            "{title}: likely in {}, but not in {}, each by its own records (probability that all have it: \
+             {probability})",
             report::listed(&class.present_in, "and"),
             report::listed(&absent, "and")
         )
@@ -264,7 +265,7 @@ fn told(row: &SharedCoefficientRow) -> String {
         }
         (_, _, [only]) => {
             let value = format::estimate(only.value, only.interval_95, unit);
-            format!("{name} told by {} alone, {value}", only.rig)
+            format!("{name} determined only by {}, {value}", only.rig)
         }
         _ => format!("{name} {values}, in units or with errors that cannot be compared"),
     }
@@ -319,6 +320,6 @@ mod tests {
         assert_eq!((row.agree, row.unit.as_str()), (None, ""));
         assert!(told(&row).ends_with("cannot be compared"), "{}", told(&row));
         let row = coefficient("gravity", "Gravity", "torque", &[("A", &a)]);
-        assert!(told(&row).contains("told by A alone"), "{}", told(&row));
+        assert!(told(&row).contains("determined only by A,"), "{}", told(&row));
     }
 }

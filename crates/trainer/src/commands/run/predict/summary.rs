@@ -15,8 +15,8 @@ const HEADER: [&str; 10] =
 pub(super) fn summary(result: &PredictionResult, folder: &Path) -> String {
     let splits = &result.splits;
     let mut parts = vec![format!(
-        "held out inside: blocks of {} peaks, one of {}; beyond: the last {:.0} % of the peaks\n\
-         errors are RMS of ln A; % and what follows are of the peaks beyond, λ of the projected slope",
+        "held out inside: blocks of {} peaks, one of {}; beyond: the last {:.0} % of the peaks\nerrors are \
+         RMS of ln A; the columns from % on are for the peaks beyond; λ means the projected slope",
         splits.block_peaks,
         splits.every,
         100.0 * splits.last_share
