@@ -91,7 +91,7 @@ impl Searched {
         let ranked = self.found.ranked(time);
         let best = ranked.first()?;
         let smaller: Vec<Fit> =
-            best.hypothesis.candidates.iter().filter_map(|member| self.without(best, *member)).collect();
+            best.hypothesis.candidates.par_iter().filter_map(|member| self.without(best, *member)).collect();
         let singles = ranked.iter().skip(1).filter(|set| set.hypothesis.counted().count() == 1);
         let singles = singles.filter(|set| smaller.iter().all(|one| one.hypothesis != set.hypothesis));
         let asked: Vec<&Fit> =
