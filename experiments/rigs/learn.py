@@ -5,7 +5,8 @@
 
 Every class that an answer lists is one observation: its features are what the answer states of it, its outcome is whether the rig has
 it. Classes of unlisted laws and of nuisances are left out, since they are neither there nor not. The coefficients maximize the
-posterior under independent Gaussian priors of mean 0 and standard deviation 2 (none on the constant).
+posterior under independent Gaussian priors of mean 0 and standard deviation 2 (none on the constant). The last one is fitted with the
+others held: it concerns records on which no class has evidence, and so it changes no other record's answer.
 """
 
 import argparse
@@ -17,7 +18,7 @@ import numpy
 import score
 
 PRIOR_DEVIATION = 2.0
-FEATURES = ["constant", "replacement", "half_swings", "error", "leads"]
+FEATURES = ["constant", "replacement", "half_swings", "error", "leads", "none"]
 
 
 def log1p_positive(nats):
@@ -40,18 +41,19 @@ def observations(answers, truths):
             evidence = row["evidence"]
             nats, swings = evidence["replacement"], evidence.get("half_swings")
             features = [1.0, log1p_positive(nats), log1p_positive(swings), math.log(row["error_without"] / row["error_with"]),
-                        float(0 < nats and nats >= most)]
+                        float(0 < nats and nats >= most), float(most <= 0)]
             rows.append((features, float(row["id"] in case.present), 1.0 if left is None else left, row["probability"], case.kind))
     return rows
 
 
-def fitted(features, outcomes, weights):
-    """Coefficients and standard errors by Newton's method."""
-    precision = numpy.full(features.shape[1], PRIOR_DEVIATION**-2)
-    precision[0] = 0.0
+def fitted(features, outcomes, weights, offset=0.0, precision=None):
+    """Coefficients and standard errors by Newton's method; the log odds have an offset."""
+    if precision is None:
+        precision = numpy.full(features.shape[1], PRIOR_DEVIATION**-2)
+        precision[0] = 0.0
     coefficients = numpy.zeros(features.shape[1])
     for _ in range(50):
-        found = 1 / (1 + numpy.exp(-features @ coefficients))
+        found = 1 / (1 + numpy.exp(-offset - features @ coefficients))
         gradient = features.T @ (weights * (outcomes - found)) - precision * coefficients
         curvature = (features.T * (weights * found * (1 - found))) @ features + numpy.diag(precision)
         step = numpy.linalg.solve(curvature, gradient)
@@ -73,7 +75,9 @@ def main():
     weights = numpy.where(unlisted, arguments.unlisted_weight, 1.0)
     learned = {}
     for name, share in (("DOUBTED", left), ("CLEAN", 1 - left)):
-        coefficients, errors = fitted(features, outcomes, weights * share)
+        first, deviations = fitted(features[:, :-1], outcomes, weights * share)
+        last, deviation = fitted(features[:, -1:], outcomes, weights * share, features[:, :-1] @ first, numpy.array([PRIOR_DEVIATION**-2]))
+        coefficients, errors = numpy.append(first, last), numpy.append(deviations, deviation)
         learned[name] = 1 / (1 + numpy.exp(-features @ coefficients))
         print(f"{name}: {sum(weights * share):.0f} classes by weight")
         for feature, value, error in zip(FEATURES, coefficients, errors):
