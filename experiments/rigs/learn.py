@@ -40,8 +40,9 @@ def observations(answers, truths):
                 continue
             evidence = row["evidence"]
             nats, swings = evidence["replacement"], evidence.get("half_swings")
-            features = [1.0, log1p_positive(nats), log1p_positive(swings), math.log(row["error_without"] / row["error_with"]),
-                        float(0 < nats and nats >= most), float(most <= 0)]
+            support = log1p_positive(nats)
+            features = [1.0, support, log1p_positive(swings), math.log(row["error_without"] / row["error_with"]),
+                        support if nats >= most else 0.0, float(most <= 0)]
             rows.append((features, float(row["id"] in case.present), 1.0 if left is None else left, row["probability"], case.kind))
     return rows
 

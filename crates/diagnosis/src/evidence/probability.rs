@@ -9,8 +9,9 @@
 //!   a thousand nats are hardly surer than two hundred if the model itself is in doubt. Evidence against a
 //!   class adds nothing;
 //! - the logarithm of the held-out error without the class over that with it;
-//! - whether the class leads: no other has more evidence. A class that imitates another effect is small
-//!   beside it;
+//! - the first of these again, with a weight of its own, if the class leads: no other has more evidence. A
+//!   class that
+//!   imitates another effect is small beside it;
 //! - whether no class has evidence: of 191 classes on such records that leave nothing, none was present.
 //!
 //! The coefficients maximize the posterior under a weak Gaussian prior (`experiments/rigs/learn.py`), given
@@ -38,11 +39,11 @@ struct Learned {
 
 /// Coefficients if something is left beside the best set.
 const DOUBTED: Learned =
-    Learned { constant: -2.10, replacement: 0.61, half_swings: 0.50, error: 0.40, leads: 1.33, none: -0.08 };
+    Learned { constant: -2.09, replacement: 0.60, half_swings: 0.50, error: 0.38, leads: 0.32, none: -0.09 };
 
 /// Coefficients if nothing is left.
 const CLEAN: Learned =
-    Learned { constant: -3.20, replacement: 0.98, half_swings: 0.30, error: 0.38, leads: 1.79, none: -2.27 };
+    Learned { constant: -3.19, replacement: 0.97, half_swings: 0.31, error: 0.35, leads: 0.70, none: -2.28 };
 
 /// Evidence for a class, or for one of two that replace each other.
 pub(crate) struct Shown<'e> {
@@ -69,14 +70,14 @@ fn logistic(log_odds: f64) -> f64 {
 
 impl Learned {
     fn probability(&self, &Shown { evidence, ratio, most }: &Shown<'_>) -> f64 {
-        let leads = evidence.replacement > 0.0 && evidence.replacement >= most;
+        let support = compressed(evidence.replacement);
         logistic(
             self.constant
-                + self.replacement * compressed(evidence.replacement)
+                + self.replacement * support
                 // Half swings that show nothing speak neither for nor against a class.
                 + self.half_swings * evidence.half_swings.map_or(0.0, compressed)
                 + self.error * log_ratio(ratio)
-                + if leads { self.leads } else { 0.0 }
+                + if evidence.replacement >= most { self.leads * support } else { 0.0 }
                 + if most <= 0.0 { self.none } else { 0.0 },
         )
     }
