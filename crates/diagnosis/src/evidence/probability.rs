@@ -9,9 +9,8 @@
 //!   a thousand nats are hardly surer than two hundred if the model itself is in doubt. Evidence against a
 //!   class adds nothing;
 //! - the logarithm of the held-out error without the class over that with it;
-//! - the first of these again, with a weight of its own, if the class leads: no other has more evidence. A
-//!   class that
-//!   imitates another effect is small beside it;
+//! - the first of these again, with a weight of its own, if the class leads, that is, if no other has more
+//!   evidence. A class that imitates another effect is small beside it;
 //! - whether no class has evidence: of 191 classes on such records that leave nothing, none was present.
 //!
 //! The coefficients maximize the posterior under a weak Gaussian prior (`experiments/rigs/learn.py`), given
