@@ -93,9 +93,10 @@ mod tests {
     use super::{Shown, probability};
     use crate::answer::ClassEvidence;
 
+    /// Probability of a class that leads.
     fn of_class(replacement: f64, half_swings: Option<f64>, ratio: f64, left_over: f64) -> f64 {
         let evidence = ClassEvidence { replacement, half_swings };
-        probability(&Shown { evidence: &evidence, ratio, most: f64::INFINITY }, left_over)
+        probability(&Shown { evidence: &evidence, ratio, most: replacement }, left_over)
     }
 
     /// Something is certainly left.
