@@ -45,7 +45,7 @@ fn steps(heading: &str, name: &str) -> Vec<Vec<String>> {
     steps.iter().map(code).collect()
 }
 
-/// What was added to the crates of a copy: new files, and files with more lines together with how many.
+/// Additions to the crates of a copy: new files, and files with more lines together with their number.
 fn added(home: &Path) -> (Vec<String>, Vec<(String, usize)>) {
     let (mut new, mut longer) = (Vec::new(), Vec::new());
     let mut folders = vec![home.join("crates")];
