@@ -10,12 +10,10 @@ use export::Repaired;
 const OF_NOISE: f64 = 0.01;
 const OF_TIME: f64 = 1e-6;
 
-/// Builds the repaired simulator. An effect without coefficients of its own (stamps in bursts, say) cannot be
-/// part of it and is listed instead; so are numbers that the data do not determine.
-pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Result<Repaired, DynamicsError> {
+/// Returns what the repaired simulator of a diagnosis cannot include, in sentences; `effects` are those of
+/// its motion.
+fn left_out(found: &Diagnosis, effects: &[Active]) -> Vec<String> {
     let own = &found.repaired;
-    let (effects, chain): (Vec<Active>, Vec<Active>) =
-        own.effects.iter().partition(|active| matches!(active.effect(), Effect::System(_)));
     let mut left_out: Vec<String> = Vec::new();
     for active in effects.iter().filter(|active| has_fitted_hidden_start(active.id())) {
         let title = title(active.id());
@@ -41,6 +39,16 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
         let here = if number.is_nominal { "the nominal simulator's" } else { "the best fit's" };
         format!("a value of {} that these data determine; the value in this file is {here}", number.name)
     }));
+    left_out
+}
+
+/// Builds the repaired simulator. An effect without coefficients of its own (stamps in bursts, say) cannot be
+/// part of it and is listed instead; so are numbers that the data do not determine.
+pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Result<Repaired, DynamicsError> {
+    let own = &found.repaired;
+    let (effects, chain): (Vec<Active>, Vec<Active>) =
+        own.effects.iter().partition(|active| matches!(active.effect(), Effect::System(_)));
+    let mut left_out = left_out(found, &effects);
     let system = match System::new(own.nominal, effects) {
         Ok(system) => system,
         Err(error) => {
