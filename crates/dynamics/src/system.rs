@@ -3,7 +3,7 @@
 use crate::active::Active;
 use crate::error::DynamicsError;
 use crate::field::{Field, MOST_EFFECTS, Mode, SYSTEM_HIDDEN, State, Term};
-use crate::input::Input;
+use crate::input::{Cubic, Input};
 use crate::law::MOST_HIDDEN;
 use crate::nominal::Nominal;
 use crate::registry::{Effect, SystemEffect};
@@ -254,25 +254,20 @@ impl<'a> Drive<'a> {
         self.input.map_or(f64::INFINITY, |input| input.piece(self.index).until + self.delay)
     }
 
-    /// Returns the raw input value and its slope at a time on the present piece.
-    pub(crate) fn raw(&self, time: f64) -> (f64, f64) {
-        self.input.map_or((0.0, 0.0), |input| {
-            let piece = input.piece(self.index);
-            (piece.at(time - self.delay), piece.slope)
-        })
+    /// Returns the raw input value at a time on the present piece, and its Taylor coefficients there; zeros
+    /// without an input.
+    pub(crate) fn raw(&self, time: f64) -> Cubic {
+        self.input.map_or([0.0; 4], |input| input.piece(self.index).expanded(time - self.delay))
     }
 
     /// Returns the torque at a time on the present piece.
     pub(crate) fn torque(&self, time: f64) -> f64 {
-        self.gain * self.raw(time).0
+        let [value, ..] = self.raw(time);
+        self.gain * value
     }
 
     pub(crate) fn advance(&mut self) {
         self.index += 1;
-    }
-
-    pub(crate) fn is_present(&self) -> bool {
-        self.input.is_some()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Thinning of the knots of an input that is sampled faster than the motion responds.
 //!
 //! An integration takes at least one step from knot to knot. A drive's command comes at a thousand samples a
-//! second and its motion responds below 10 Hz: straight lines over several samples move it the same way. A
+//! second and its motion responds below 10 Hz: cubic polynomials over many samples move it the same way. A
 //! fit decides how many samples one knot may stand for: as many as change its prediction by no more than a
 //! small part of its residual.
 
@@ -10,7 +10,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::residuals;
 
 /// Maximum number of samples that one knot stands for.
-const MOST: usize = 32;
+const MOST: usize = 64;
 
 /// Largest change of a fit's prediction, relative to the fit's residual (both RMS).
 const PART: f64 = 0.01;
@@ -20,9 +20,9 @@ impl Data {
     /// prediction: a power of two, 1 where there is nothing to spare.
     pub(crate) fn spare_knots(&self, at: &Fit) -> usize {
         let Some(change) = self.change(at) else { return 1 };
-        let counts = std::iter::successors(Some(2), |count| Some(2 * count));
-        let close = counts.take_while(|&count| count <= MOST && change(count) <= PART);
-        close.last().unwrap_or(1)
+        // From the cheapest prediction on.
+        let mut counts = std::iter::successors(Some(MOST), |count| (*count > 2).then_some(count / 2));
+        counts.find(|&count| change(count) <= PART).unwrap_or(1)
     }
 
     /// Returns `true` if a fit made with one knot for `count` samples does not hold with all knots: they

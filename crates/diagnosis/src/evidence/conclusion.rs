@@ -298,7 +298,8 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     Verdict { status, effects, confidence: confidence(parts, status), left_over: parts.left_over, equivalent }
 }
 
-/// Returns the probability that every named class acts, with the named kinds, and no other class does.
+/// Returns the probability that every named class acts, with the named kinds, and that nothing else is
+/// missing: no other class, and nothing outside the vocabulary unless that is the verdict.
 fn confidence(parts: &Parts<'_>, status: Status) -> f64 {
     let is_named =
         |class: &&EffectClass| parts.named().iter().any(|own| own.evidence_class().id() == class.id);
@@ -309,10 +310,7 @@ fn confidence(parts: &Parts<'_>, status: Status) -> f64 {
         let of = |kind: &&Kind| parts.named().iter().any(|own| own.id() == kind.id);
         class.probability * class.kinds.iter().filter(of).map(|kind| kind.share).sum::<f64>().min(1.0)
     });
-    let of_nameless = match status {
-        Status::Unknown => parts.nameless,
-        Status::Effect if !parts.named().is_empty() => 1.0,
-        _ => 1.0 - parts.nameless,
-    };
-    of_nameless * classes.product::<f64>()
+    let unlisted = parts.unlisted();
+    let of_unlisted = if status == Status::Unknown { unlisted } else { 1.0 - unlisted };
+    of_unlisted * classes.product::<f64>()
 }

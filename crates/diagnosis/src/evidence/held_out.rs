@@ -47,6 +47,9 @@ const BLOCK: f64 = 0.75;
 /// Number of turns in which blocks are held out.
 const TURNS: usize = 4;
 
+/// Residuals of parts, each with the part's index.
+type Numbered = Vec<(usize, DVector<f64>)>;
+
 /// Fit on a shooting interval, and the same on the unjoined segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Both<'a> {
@@ -71,33 +74,50 @@ impl Both<'_> {
     }
 
     /// Returns the residuals of the segments that `train` does not select, with only start states fitted to
-    /// them.
+    /// them, and those of [`Self::continued`] if segments are joined.
     fn scored(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
         moving: Moving,
+    ) -> Result<(Vec<DVector<f64>>, Numbered), DynamicsError> {
+        let learned = self.learned(train, moving)?;
+        let residuals = self.with_own_starts(train, &learned.0)?;
+        if !self.longer.is_joined() {
+            return Ok((residuals, Vec::new()));
+        }
+        // The first part is always fitted: predicting backward to it would be another question than
+        // continuing.
+        let firsts = self.longer.firsts();
+        if firsts.iter().all(|&first| train(first)) {
+            return Ok((residuals, self.continued(train, &learned)?));
+        }
+        let train = |index: usize| train(index) || firsts.contains(&index);
+        Ok((residuals, self.continued(&train, &self.learned(&train, moving)?)?))
+    }
+
+    /// Returns the residuals of the segments that `train` does not select, with only start states fitted to
+    /// them.
+    fn with_own_starts(
+        &self,
+        train: &(dyn Fn(usize) -> bool + Sync),
+        learned: &Fit,
     ) -> Result<Vec<DVector<f64>>, DynamicsError> {
-        let (learned, _) = self.learned(train, moving)?;
         let others = self.fitted.point.starts.iter().enumerate().filter(|(index, _)| !train(*index));
         let point = Point {
-            globals: learned.point.globals,
+            globals: learned.point.globals.clone(),
             starts: others.map(|(_, start)| start.clone()).collect(),
         };
         let rest = self.segments.only(|index| !train(index));
         Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?.residuals)
     }
 
-    /// Returns the residuals, with their indices, of the parts that `train` does not select and that are not
-    /// the first of a joined segment; nothing is fitted to them. The first part is always fitted: predicting
-    /// backward to it would be another question than continuing.
+    /// Returns the residuals, with their indices, of the parts that `train` does not select; nothing is fitted
+    /// to them. `learned` is the fit of the others, with the indices of its segments.
     fn continued(
         &self,
-        train: &(dyn Fn(usize) -> bool + Sync),
-        moving: Moving,
-    ) -> Result<Vec<(usize, DVector<f64>)>, DynamicsError> {
-        let firsts = self.longer.firsts();
-        let train = |index: usize| train(index) || firsts.contains(&index);
-        let (learned, numbers) = self.learned(&train, moving)?;
+        train: &dyn Fn(usize) -> bool,
+        (learned, numbers): &(Fit, Vec<usize>),
+    ) -> Result<Numbered, DynamicsError> {
         let mut simulator =
             Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, Derivatives::None)?;
         let mut all = Vec::new();
@@ -165,7 +185,8 @@ impl Both<'_> {
         let (even, odd) = (|index: usize| index.is_multiple_of(2), |index: usize| !index.is_multiple_of(2));
         let starts = self.fitted.hypothesis.start_length();
         let (first, second) = rayon::join(|| self.scored(&odd, moving), || self.scored(&even, moving));
-        let (mut first, mut second) = (first?.into_iter(), second?.into_iter());
+        let ((first, first_continued), (second, second_continued)) = (first?, second?);
+        let (mut first, mut second) = (first.into_iter(), second.into_iter());
         let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
             .filter_map(|index| if even(index) { first.next() } else { second.next() })
             .collect();
@@ -174,13 +195,9 @@ impl Both<'_> {
             own * (own.len() as f64 / freedom).sqrt()
         };
         let mut continued: Vec<DVector<f64>> = residuals.iter().map(scaled).collect();
-        if self.longer.is_joined() {
-            let (first, second) =
-                rayon::join(|| self.continued(&odd, moving), || self.continued(&even, moving));
-            for (index, part) in first?.into_iter().chain(second?) {
-                if let Some(own) = continued.get_mut(index) {
-                    *own = part;
-                }
+        for (index, part) in first_continued.into_iter().chain(second_continued) {
+            if let Some(own) = continued.get_mut(index) {
+                *own = part;
             }
         }
         Ok(HeldOut { residuals, starts, continued })
@@ -190,7 +207,9 @@ impl Both<'_> {
     pub(crate) fn last_third(&self, moving: Moving) -> Result<f64, DynamicsError> {
         let count = self.segments.segments.len();
         let first = count.saturating_sub((count / 3).max(1));
-        let scored = self.scored(&|index| index < first, moving)?;
+        let train = |index: usize| index < first;
+        let (learned, _) = self.learned(&train, moving)?;
+        let scored = self.with_own_starts(&train, &learned)?;
         Ok(mean_square(&scored, self.fitted.hypothesis.start_length()))
     }
 }

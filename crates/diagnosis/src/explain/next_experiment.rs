@@ -78,10 +78,7 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
     let (mut segments, mut starts) = (noiseless(data, model)?, model.point.starts.clone());
     let record = data.inputs.len();
     let mut inputs = data.inputs.clone();
-    let driven = |input: &Input| {
-        let values = input.values().iter().map(|u| u * plan.drive).collect();
-        Input::new(input.times().to_vec(), values, input.hold())
-    };
+    let driven = |input: &Input| input.scaled(plan.drive);
     inputs.push(data.inputs.first().and_then(Option::as_ref).map(driven).transpose()?);
     let planned = Data { inputs, ..data.clone() };
     let point = turned(data, model, plan.tilt);

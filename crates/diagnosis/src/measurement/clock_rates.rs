@@ -23,7 +23,7 @@ use crate::model::tangent::matrix;
 use crate::noise::floor;
 use crate::search::archive::Archive;
 use crate::search::proposals::{Proposal, fit_all, proposal};
-use dynamics::{DynamicsError, Input};
+use dynamics::DynamicsError;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -136,9 +136,7 @@ impl Data {
         let segments =
             self.segments.iter().map(|own| Segment { times: slower(&own.times, own.record), ..own.clone() });
         let inputs = self.inputs.iter().enumerate().map(|(record, input)| {
-            let own = input.as_ref();
-            own.map(|own| Input::new(slower(own.times(), record), own.values().to_vec(), own.hold()))
-                .transpose()
+            input.as_ref().map(|own| own.with_times(slower(own.times(), record))).transpose()
         });
         Ok(Self { segments: segments.collect(), inputs: inputs.collect::<Result<_, _>>()?, ..self.clone() })
     }

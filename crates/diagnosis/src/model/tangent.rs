@@ -11,7 +11,7 @@ use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
-use crate::model::candidates::{Along, held, padded};
+use crate::model::candidates::{Along, padded};
 use crate::model::predictor::{Derivatives, Motion, Simulator};
 use dynamics::{Active, Coefficients, DynamicsError, Effect, Input, System, Values};
 use nalgebra::{DMatrix, Matrix2, Vector2};
@@ -89,7 +89,7 @@ impl Path {
                 .times
                 .iter()
                 // Without an input there is no torque.
-                .map(|time| input.map_or(0.0, |input| gain * held(input, *time)))
+                .map(|time| input.map_or(0.0, |input| gain * input.at(*time)))
                 .collect();
             let (x, rate, curvature) = observed(data.quantity, &motion);
             // Every series has an entry for each sample.

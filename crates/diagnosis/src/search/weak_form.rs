@@ -14,7 +14,7 @@ use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
-use crate::model::candidates::{Along, held};
+use crate::model::candidates::Along;
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::matrices::solve;
 use crate::search::archive::Archive;
@@ -219,7 +219,7 @@ impl<'s> Seen<'s> {
     fn of(data: &'s Data, segment: &'s Segment, gain: f64) -> Self {
         let command = data.inputs.get(segment.record).and_then(Option::as_ref);
         // Without an input there is no torque.
-        let input = segment.times.iter().map(|time| command.map_or(0.0, |input| gain * held(input, *time)));
+        let input = segment.times.iter().map(|time| command.map_or(0.0, |input| gain * input.at(*time)));
         Self { segment, velocity: slopes(&segment.times, &segment.values), input: input.collect(), command }
     }
 

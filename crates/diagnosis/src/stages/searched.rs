@@ -96,13 +96,15 @@ impl Searched {
         let singles = singles.filter(|set| smaller.iter().all(|one| one.hypothesis != set.hypothesis));
         let asked: Vec<&Fit> =
             std::iter::once(*best).chain(singles.take(SINGLES).copied()).chain(&smaller).collect();
+        let short = |set: &Fit| shortened(&own.coarse, &self.interval.data, set).ok();
+        // The best set leaves the least, so that the others need no more knots than it does.
+        let at = short(best)?;
+        let [own_data, other_data] =
+            [own, other].map(|question| question.data.with_fewer_knots(question.data.spare_knots(&at)));
         let again = |set: &&Fit| {
-            let short = shortened(&own.coarse, &self.interval.data, set).ok()?;
-            let on = |data: &Data| {
-                let data = data.with_fewer_knots(data.spare_knots(&short));
-                fit(&data, &short.hypothesis, short.point.clone(), Moving::All, Stopping::SEARCH).ok()
-            };
-            Some((on(&own.data)?, on(&other.data)?))
+            let Fit { hypothesis, point, .. } = short(set)?;
+            let on = |data: &Data| fit(data, &hypothesis, point.clone(), Moving::All, Stopping::SEARCH).ok();
+            Some((on(&own_data)?, on(&other_data)?))
         };
         let fits: Vec<Option<(Fit, Fit)>> = asked.par_iter().map(again).collect();
         let both = || fits.iter().zip(&asked).filter_map(|(fits, set)| Some((fits.as_ref()?, *set)));

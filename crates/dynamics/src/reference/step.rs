@@ -163,7 +163,7 @@ pub(crate) fn rates(
     time: f64,
     vector: &Vector,
 ) -> Vector {
-    let input = if drive.is_present() { drive.torque(time) } else { 0.0 };
+    let input = drive.torque(time);
     let state = state(time, vector, input);
     let (acceleration, hidden) = field.rates(&state, mode);
     let mut rates = [0.0; LENGTH];

@@ -63,12 +63,20 @@ impl Columns {
         }
     }
 
-    /// Adds `factor` times a series to the direct influence of a free quantity on a rate.
-    pub(crate) fn add_source(&mut self, column: usize, rate: usize, series: &[f64], factor: f64) {
+    /// Adds `factor` times a series to the direct influence of a free quantity on a rate, from degree `from`
+    /// on.
+    pub(crate) fn add_source(
+        &mut self,
+        column: usize,
+        rate: usize,
+        series: &[f64],
+        factor: f64,
+        from: usize,
+    ) {
         debug_assert!(column < self.columns && rate < self.states, "column {column}, rate {rate}");
         let block = self.blocks.get_mut(column / LANES);
         let Some(source) = block.and_then(|block| block.sources.get_mut(rate)) else { return };
-        for (lanes, value) in source.iter_mut().zip(series) {
+        for (lanes, value) in source.iter_mut().skip(from).zip(series) {
             if let Some(lane) = lanes.get_mut(column % LANES) {
                 *lane += factor * value;
             }

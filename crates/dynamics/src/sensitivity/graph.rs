@@ -121,12 +121,13 @@ impl Graph {
         self.leaves.get(leaf).copied().flatten()
     }
 
-    /// Sets the two lowest coefficients of a leaf's series and clears the rest.
-    pub(crate) fn set_leaf(&mut self, leaf: usize, value: f64, slope: f64) {
+    /// Sets the lowest coefficients of a leaf's series and clears the rest.
+    pub(crate) fn set_leaf(&mut self, leaf: usize, lowest: &[f64]) {
         if let Some(series) = self.leaf_node(leaf).and_then(|node| self.series.get_mut(node)) {
             *series = [0.0; LENGTH];
-            let [first, second, ..] = series;
-            (*first, *second) = (value, slope);
+            for (slot, value) in series.iter_mut().zip(lowest) {
+                *slot = *value;
+            }
         }
     }
 

@@ -173,7 +173,7 @@ impl<'a> March<'a> {
 
     pub(super) fn point(&self) -> State<f64> {
         let [position, velocity, hidden @ ..] = self.state;
-        let input = if self.drive.is_present() { self.drive.torque(self.time) } else { 0.0 };
+        let input = self.drive.torque(self.time);
         State { time: self.time, position, velocity, hidden, input }
     }
 
@@ -215,15 +215,15 @@ impl<'a> March<'a> {
         let number = self.model.piece(&self.mode);
         debug_assert!(number < self.model.graphs.len(), "the piece was just found or written down");
         let room = (self.drive.until().min(self.end) - self.time).max(0.0);
-        let raw = if self.drive.is_present() { self.drive.raw(self.time) } else { (0.0, 0.0) };
+        let raw = self.drive.raw(self.time);
         let Model { graphs, states, settings, .. } = &mut *self.model;
         let Some(piece) = graphs.get_mut(number) else { return Ok(()) };
         let graph = &mut piece.graph;
         let (states, most) = (*states, settings.degree);
-        graph.set_leaf(TIME, self.time, 1.0);
-        graph.set_leaf(INPUT, raw.0, raw.1);
+        graph.set_leaf(TIME, &[self.time, 1.0]);
+        graph.set_leaf(INPUT, &raw);
         for (variable, &value) in self.state.iter().enumerate().take(states) {
-            graph.set_leaf(STATE + variable, value, 0.0);
+            graph.set_leaf(STATE + variable, &[value]);
         }
         let mut series = [[0.0; LENGTH]; MOST_STATES];
         for (series, &value) in series.iter_mut().zip(&self.state) {
@@ -278,7 +278,8 @@ impl<'a> March<'a> {
         let Some(piece) = graphs.get_mut(number) else { return };
         let graph = &mut piece.graph;
         couplings.clear();
-        let slope = if self.drive.is_present() { self.drive.raw(self.time).1 } else { 0.0 };
+        let [_, slope, second, third] = self.drive.raw(self.time);
+        let slopes = [slope, 2.0 * second, 3.0 * third];
         let mut links = [None; MOST_STATES];
         for (rate, link) in links.iter_mut().enumerate().take(*states) {
             let Some(node) = graph.rates.get(rate).copied() else { continue };
@@ -301,8 +302,14 @@ impl<'a> March<'a> {
             }
             for (column, place) in free.iter().enumerate() {
                 match *place {
-                    Place::Leaf(leaf) => columns.add_source(column, rate, graph.derivative(leaf), 1.0),
-                    Place::Delay(_) => columns.add_source(column, rate, graph.derivative(INPUT), -slope),
+                    Place::Leaf(leaf) => columns.add_source(column, rate, graph.derivative(leaf), 1.0, 0),
+                    Place::Delay(_) => {
+                        let by_input = graph.derivative(INPUT);
+                        for (from, slope) in slopes.into_iter().enumerate().take(degree) {
+                            let kept = by_input.len().min(degree - from);
+                            columns.add_source(column, rate, head(by_input, kept), -slope, from);
+                        }
+                    }
                     Place::Start(_) => {}
                 }
             }

@@ -187,7 +187,7 @@ impl Model {
                 [nominal.inertia, nominal.damping, nominal.stiffness, nominal.rest_angle, nominal.input_gain];
             let effects = field.terms.iter().flat_map(|term| term.values);
             for (index, value) in coefficients.into_iter().chain(effects).enumerate() {
-                piece.graph.set_leaf(NOMINAL + index, value, 0.0);
+                piece.graph.set_leaf(NOMINAL + index, &[value]);
             }
             piece.graph.prepare();
             piece.current = true;

@@ -57,15 +57,16 @@ impl March<'_> {
     /// Computes by how much each free quantity delays the event: −δm/ṁ with the margin m of the edge.
     fn shift(&mut self, edge: Edge, number: usize) {
         let point = self.point();
-        let raw = if self.drive.is_present() { self.drive.raw(self.time) } else { (0.0, 0.0) };
+        let raw = self.drive.raw(self.time);
+        let [_, slope, ..] = raw;
         let Model { graphs, states, free, columns, shifts, .. } = &mut *self.model;
         let Some(piece) = graphs.get_mut(number) else { return };
         let graph = &mut piece.graph;
         let Some(&(_, node)) = graph.edges.iter().find(|(other, _)| *other == edge) else { return };
-        graph.set_leaf(TIME, point.time, 1.0);
-        graph.set_leaf(INPUT, raw.0, raw.1);
+        graph.set_leaf(TIME, &[point.time, 1.0]);
+        graph.set_leaf(INPUT, &raw);
         for (variable, &value) in self.state.iter().enumerate().take(*states) {
-            graph.set_leaf(STATE + variable, value, 0.0);
+            graph.set_leaf(STATE + variable, &[value]);
         }
         graph.extend(0);
         debug_assert_eq!(graph.rates.len(), *states, "a rate for each state variable");
@@ -84,7 +85,7 @@ impl March<'_> {
                 (0..*states).map(|state| partial(STATE + state) * columns.first(column, state)).sum();
             moved += match *place {
                 Place::Leaf(leaf) => partial(leaf),
-                Place::Delay(_) => -raw.1 * partial(INPUT),
+                Place::Delay(_) => -slope * partial(INPUT),
                 Place::Start(_) => 0.0,
             };
             // An edge that is only touched has no side to be shifted to.

@@ -52,7 +52,7 @@ impl March<'_> {
         }
         let [position, velocity, hidden @ ..] = end;
         let time = self.time + size;
-        let input = if self.drive.is_present() { self.drive.torque(time) } else { 0.0 };
+        let input = self.drive.torque(time);
         State { time, position, velocity, hidden, input }
     }
 

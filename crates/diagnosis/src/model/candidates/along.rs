@@ -1,7 +1,7 @@
 //! Fitted motion, in the form that a candidate reads to compute its first-order change.
 
 use crate::data::scales::Scales;
-use dynamics::{Coefficients, Hold, Input, MOST_HIDDEN, MOST_PARAMETERS, Moment, SystemEffect, Values};
+use dynamics::{Coefficients, Input, MOST_HIDDEN, MOST_PARAMETERS, Moment, SystemEffect, Values};
 
 /// Motion on one segment, with the response of the observed quantity to small torques along it.
 ///
@@ -55,21 +55,6 @@ impl Along<'_> {
             direction: if velocity < 0.0 { -1.0 } else { 1.0 },
             region: 0,
         }
-    }
-}
-
-/// Returns the input at a time.
-pub(crate) fn held(input: &Input, time: f64) -> f64 {
-    let at = input.times().partition_point(|knot| *knot <= time);
-    let value = |index: usize| input.values().get(index).copied();
-    let knot = |index: usize| input.times().get(index).copied();
-    // An input without values does nothing.
-    let Some(before) = at.checked_sub(1) else { return value(0).unwrap_or(0.0) };
-    // An input has a value at every knot.
-    let low = value(before).unwrap_or(0.0);
-    match (input.hold(), value(at), knot(before), knot(at)) {
-        (Hold::Linear, Some(high), Some(from), Some(to)) => low + (high - low) * (time - from) / (to - from),
-        _ => low,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Input that acts late.
 
-use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid, held, secant};
+use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid, secant};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Nominal, SystemEffect};
 
@@ -41,7 +41,7 @@ impl CandidateLaw for InputDelay {
         let &[delay] = shape else { return Vec::new() };
         let shifted = along.times.iter().zip(along.input).map(|(time, now)| {
             // Without an input nothing is delayed.
-            along.command.map_or(0.0, |input| along.nominal.input_gain * held(input, time - delay) - now)
+            along.command.map_or(0.0, |input| along.nominal.input_gain * input.at(time - delay) - now)
         });
         vec![(along.respond)(&shifted.collect::<Vec<f64>>())]
     }

@@ -60,7 +60,7 @@ mod unlisted_damping;
 mod unlisted_stiffness;
 
 use crate::model::candidate::Candidate;
-pub(crate) use along::{Along, Lines, Mode, held, padded};
+pub(crate) use along::{Along, Lines, Mode, padded};
 pub(crate) use evidence_class::EvidenceClass;
 pub(crate) use law::{CandidateLaw, grid, secant};
 pub(crate) use main_mode::MainMode;
