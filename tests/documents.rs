@@ -34,10 +34,10 @@ fn source_files_stay_readable_in_length() {
 fn doc_comments_begin_with_what_the_item_is() {
     const BEGINNINGS: [&str; 9] =
         ["What", "Whether", "How", "Where", "Which", "Who", "When", "That which", "Of which"];
-    let docs = |line: &str| {
+    fn docs(line: &str) -> Option<&str> {
         let words = line.trim_start();
-        words.strip_prefix("/// ").or_else(|| words.strip_prefix("//! ")).map(str::to_owned)
-    };
+        words.strip_prefix("/// ").or_else(|| words.strip_prefix("//! "))
+    }
     let mut seen = 0;
     let mut found = Vec::new();
     for path in files("crates", "rs").into_iter().chain(files("tests", "rs")).chain(files("examples", "rs")) {
@@ -299,5 +299,16 @@ fn the_diagnosis_that_the_documents_show_is_what_the_command_says() {
             let is_there = told.iter().any(|own| own.starts_with(&line));
             assert!(is_there, "{document} shows `{line}`; the command says\n{}", told.join("\n"));
         }
+    }
+}
+
+#[test]
+fn the_number_of_effects_is_the_registrys() {
+    let listed: serde_json::Value =
+        serde_json::from_slice(&trainer(&["list", "effects", "--json"]).stdout).unwrap();
+    let said = format!("which of {} effects", listed["effects"].as_array().unwrap().len());
+    for document in ["README.md", "book/src/introduction.md"] {
+        let text = std::fs::read_to_string(root().join(document)).unwrap();
+        assert!(text.contains(&said), "{document} does not say `{said}`");
     }
 }

@@ -95,7 +95,7 @@ pub fn bar_state(row: &BarRow) -> &str {
     let [low, high] = row.interval_95;
     let excludes = row.at_least.is_some_and(|bar| high < bar) || row.at_most.is_some_and(|bar| low > bar);
     match (row.state.as_str(), row.missed_beyond_chance) {
-        ("not met", false) if excludes => "not met, by no more than scatter explains",
+        ("not met", false) if excludes => "not met, within scatter",
         ("not met", false) if low.is_finite() && high.is_finite() => "not met, within chance",
         (state, _) => state,
     }
@@ -156,7 +156,7 @@ mod tests {
         };
         assert_eq!(bar_state(&bar(0.02, 0.07, false)), "not met, within chance");
         assert_eq!(bar_state(&bar(0.04, 0.07, true)), "not met");
-        assert_eq!(bar_state(&bar(0.04, 0.07, false)), "not met, by no more than scatter explains");
+        assert_eq!(bar_state(&bar(0.04, 0.07, false)), "not met, within scatter");
         assert_eq!(bar_state(&bar(f64::NAN, f64::NAN, false)), "not met");
         assert_eq!(bar_state(&BarRow { state: "met".into(), ..bar(0.0, 0.01, false) }), "met");
     }

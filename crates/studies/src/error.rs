@@ -21,10 +21,10 @@ pub enum StudyError {
         source: EnvelopeError,
     },
     /// No line can be fitted to the envelope.
-    #[error("{file}: {source}")]
+    #[error("problem.{problem}: {source}")]
     Oracle {
-        /// Key of the problem in the configuration.
-        file: String,
+        /// Name of the problem.
+        problem: String,
         /// Reason.
         source: OracleError,
     },

@@ -218,8 +218,7 @@ fn law(
 /// # Errors
 /// [`StudyError::Oracle`] if no line can be fitted.
 pub(crate) fn line(problem: &str, envelope: &Envelope) -> Result<DecayFit, StudyError> {
-    oracle::decay_rate(envelope)
-        .map_err(|source| StudyError::Oracle { file: format!("problem.{problem}"), source })
+    oracle::decay_rate(envelope).map_err(|source| StudyError::Oracle { problem: problem.to_owned(), source })
 }
 
 impl Ready {

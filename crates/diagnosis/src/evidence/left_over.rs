@@ -1,13 +1,14 @@
 //! Test for a left-over that no named effect explains.
 //!
-//! It examines the residual of the best named set in two ways, both relative to the noise around it:
+//! It examines the residual of the best named set in three ways, all relative to the noise around it:
 //!
 //! - the decrease by a smooth function of position, velocity, time and the input, as a torque or in the
 //!   sensor, above the frequencies of slow drifts;
 //! - the excess of the residual's spectrum, in a band about a harmonic of the swing or midway between two,
-//!   over the neighboring bands. This needs no basis, and detects torques and sensor effects alike.
+//!   over the neighboring bands. This needs no basis, and detects torques and sensor effects alike;
+//! - a steady line at any frequency, over the louder of the two sides about it.
 //!
-//! Either compares two variances, which are both the noise's if nothing is left. The evidence is the log
+//! Each compares two variances, which are both the noise's if nothing is left. The evidence is the log
 //! likelihood ratio of two Gaussian variances against a common one. So noise of any color counts for nothing
 //! if its spectrum is smooth over a few bands, and few samples give little evidence.
 
@@ -20,6 +21,7 @@ use crate::model::matrices::{element, entry};
 use crate::model::projection::Projection;
 use crate::model::tangent::{Path, matrix};
 use crate::noise::high_pass::high_pass;
+use crate::noise::spectrum::steady;
 use crate::noise::statistics::mean;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
@@ -43,8 +45,13 @@ const SWING: usize = 1;
 /// Number of bins of a segment's spectrum on either side of a band's center that belong to it.
 const BESIDE: i32 = 1;
 
-/// Number of comparisons: every band, a free torque and a free sensor. The evidence is the largest of all.
-const LOOKS: f64 = 2.0 + 2.0 * HARMONICS as f64;
+/// Number of comparisons: every band, a free torque, a free sensor and the lines. The evidence is the largest
+/// of all.
+const LOOKS: f64 = 3.0 + 2.0 * HARMONICS as f64;
+
+/// Places on either side of a line, in steps of half the resolution, between which the spectrum counts as the
+/// noise about it. Closer ones hold a part of the line itself.
+const SIDE: std::ops::Range<usize> = 5..25;
 
 /// Number of independent squares in a band of three neighboring bins under a Hann window, whose amplitudes
 /// have the correlations 2/3 and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
@@ -187,6 +194,25 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
 }
 
+/// Returns the excess of the steady line that stands out most in a spectrum, if it has noise on both sides.
+/// The louder side counts: the spectrum of red noise falls toward higher frequencies.
+fn standing(gains: &[f64]) -> Unexplained {
+    let side = |range: std::ops::Range<usize>| gains.get(range).map(|own| 0.5 * mean(own));
+    // Two neighboring places of the grid depend on each other, and each gain is a sum of two squares.
+    let worth = SIDE.len() as f64;
+    let of = |(at, gain): (usize, &f64)| {
+        let below = side(at.checked_sub(SIDE.end)?..at.checked_sub(SIDE.start)?)?;
+        let noise = below.max(side(at + SIDE.start + 1..at + SIDE.end + 1)?);
+        let evidence = larger(0.5 * gain, 2.0, noise, worth);
+        Some(Unexplained { evidence, squares: (gain - 2.0 * noise).max(0.0) })
+    };
+    let found = gains.iter().enumerate().filter_map(of);
+    let nothing = Unexplained { evidence: 0.0, squares: 0.0 };
+    let best = found.fold(nothing, |best, own| if own.evidence > best.evidence { own } else { best });
+    let frequencies = (0.5 * gains.len() as f64).max(1.0);
+    Unexplained { evidence: (best.evidence - frequencies.ln() - LOOKS.ln()).max(0.0), ..best }
+}
+
 /// Returns the lowest angular frequency of a sustained motion: the swing's or, in driven data, that with
 /// which the records cross their mean, if it is lower.
 fn slowest(data: &Data) -> f64 {
@@ -271,7 +297,9 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let mut residual: Vec<f64> = fit.stacked().collect();
     filter(&mut residual);
     let residual = DVector::from_vec(residual);
-    let mut found = spectrum;
+    let residuals: Vec<&[f64]> = fit.residuals.iter().map(DVector::as_slice).collect();
+    let line = standing(&steady(data, &residuals).gains);
+    let mut found = if line.evidence > spectrum.evidence { line } else { spectrum };
     for acting in [Acting::Torque, Acting::Sensor] {
         let columns = columns_of(&paths, data.quantity, &free, acting);
         let (squares, directions) = taken(&residual, &projection, &columns, filter);
@@ -287,7 +315,8 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
 
 #[cfg(test)]
 mod tests {
-    use super::{Band, HARMONICS, SWING, WORTH, larger, outstanding, periodogram};
+    use super::{Band, HARMONICS, SWING, WORTH, larger, outstanding, periodogram, standing};
+    use crate::noise::periodogram::add;
     use rand_distr::{Distribution, StandardNormal};
 
     #[test]
@@ -328,5 +357,33 @@ mod tests {
         assert!((mean - 1.0).abs() < 0.05, "{mean}");
         // The mean of n squares of unit Gaussians has the variance 2/n.
         assert!((2.0 / variance / WORTH - 1.0).abs() < 0.15, "{}", 2.0 / variance);
+    }
+
+    /// A sine of half the noise stands out at any frequency; white and red noise without one do not, nor
+    /// does a slow drift.
+    #[test]
+    fn a_line_stands_out_and_no_noise_does() {
+        let mut generator = seed::Seed::new(5).child("noise").generator();
+        let evidence = |of: &mut dyn FnMut(f64) -> f64| {
+            let points: Vec<(f64, f64)> = (0..2000).map(f64::from).map(|time| (time, of(time))).collect();
+            let step = 0.5 * std::f64::consts::TAU / 2000.0;
+            let mut gains = vec![0.0; 1500];
+            add(&points, 2000.0, 3.0 * step, step, &mut gains);
+            standing(&gains).evidence
+        };
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        for line in [0.1, 0.337, 2.0] {
+            assert!(evidence(&mut |time| noise() + 0.5 * (line * time).sin()) > 5.0, "{line}");
+        }
+        for _ in 0..20 {
+            let mut red = 0.0;
+            assert_eq!(evidence(&mut |_| noise()), 0.0);
+            assert_eq!(evidence(&mut |time| noise() + 2e-3 * time), 0.0);
+            let mut walk = |_: f64| {
+                red = 0.98 * red + noise();
+                red
+            };
+            assert!(evidence(&mut walk) < 1.0);
+        }
     }
 }

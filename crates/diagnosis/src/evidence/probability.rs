@@ -77,7 +77,7 @@ impl Learned {
                 + self.half_swings * evidence.half_swings.map_or(0.0, compressed)
                 + self.error * log_ratio(ratio)
                 + if evidence.replacement >= most { self.leads * support } else { 0.0 }
-                + if most <= 0.0 { self.none } else { 0.0 },
+                + if most.max(evidence.replacement) <= 0.0 { self.none } else { 0.0 },
         )
     }
 }

@@ -24,9 +24,17 @@ fn grid(data: &Data, span: f64) -> (f64, f64, usize) {
     (lowest, (highest - lowest) / count as f64, count)
 }
 
-/// Returns the strongest steady lines of a residual that comes in segments: peaks of the periodogram. Each
-/// line has one phase per record, like the vibration of a nearby machine.
-pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line> {
+/// Gains of steady lines on a grid of angular frequencies, in rad/s.
+pub(crate) struct Spectrum {
+    pub(crate) lowest: f64,
+    pub(crate) step: f64,
+    /// Decrease of the sum of squares by a sine and a cosine of each frequency.
+    pub(crate) gains: Vec<f64>,
+}
+
+/// Returns the spectrum of a residual that comes in segments. Each line has one phase per record, like the
+/// vibration of a nearby machine.
+pub(crate) fn steady(data: &Data, residuals: &[&[f64]]) -> Spectrum {
     let (lowest, step, count) = grid(data, data.facts.duration);
     let mut gains = vec![0.0; count];
     for record in 0..data.inputs.len() {
@@ -35,6 +43,12 @@ pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line>
             own.flat_map(|(segment, e)| segment.times.iter().copied().zip(e.iter().copied())).collect();
         add(&points, points.len() as f64, lowest, step, &mut gains);
     }
+    Spectrum { lowest, step, gains }
+}
+
+/// Returns the strongest steady lines of a residual that comes in segments: peaks of its spectrum.
+pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line> {
+    let Spectrum { lowest, step, gains } = steady(data, residuals);
     peaks(&gains, lowest, step, most)
 }
 

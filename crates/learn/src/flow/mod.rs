@@ -12,5 +12,5 @@ pub use field::{Field, Slope};
 pub use model::{FlowModel, Posterior, Running};
 pub use run::{Motion, Run};
 pub use shooter::FieldShooter;
-pub use shooting::{Fit, LENGTHS, Penalty, Shooter, Shooting, Shot, fit, phase_name};
+pub use shooting::{Fit, LENGTHS, Penalty, Shooter, Shooting, Shot, fit, longest_as_good, phase_name};
 pub use start::{State, first_guess};

@@ -20,6 +20,23 @@ pub fn phase_name(periods: f64) -> String {
     if periods < 1e6 { format!("pieces of {periods} periods") } else { "whole parts".to_owned() }
 }
 
+/// A longer piece is preferred if its validation error is within this factor of the smallest.
+const AS_GOOD: f64 = 1.02;
+
+/// Returns the result of the longest pieces whose validation error is nearly the smallest. `found` holds the
+/// errors and results, those of the shortest pieces first; `None` if there are none.
+///
+/// ```
+/// use learn::flow::longest_as_good;
+/// assert_eq!(longest_as_good(vec![(1.0, "two periods"), (1.01, "eight"), (1.5, "whole")]), Some("eight"));
+/// ```
+#[must_use]
+pub fn longest_as_good<T>(found: Vec<(f64, T)>) -> Option<T> {
+    let best = found.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
+    let chosen = found.into_iter().rev().find(|(error, _)| *error <= AS_GOOD * best || !best.is_finite());
+    chosen.map(|(_, result)| result)
+}
+
 /// Residuals of a piece and the Jacobian of its prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shot {

@@ -84,9 +84,9 @@ pub(crate) const BANKS: [Bank; 13] = [
 /// Definition of `right` in words, for the results.
 pub(crate) const RIGHT_MEANS: &str = "Effects of the measurement chain that the records of every bank have \
      in common are first removed from an answer. If nothing is missing, an answer is right if it names \
-     nothing, with status none or calibration. If effects are hidden, its status must be `effect` and its \
+     nothing, with status none or calibration. If effects are hidden, its status must be effect and its \
      set exactly the hidden one. If the hidden effect was not to be considered or lies outside the \
-     vocabulary, `unknown` is right, and so is an answer that names only classes that the truth allows; if \
+     vocabulary, unknown is right, and so is an answer that names only classes that the truth allows; if \
      such a law is small, every answer that names no other class is right. A case without an answer is \
      wrong. The stated confidence is the probability of being right in this sense.";
 

@@ -3,7 +3,8 @@
 use super::{Library, Term, law};
 use crate::data::{DataSet, Trajectory};
 use crate::flow::{
-    Field, FieldShooter, Fit, FlowModel, LENGTHS, Posterior, Running, Shooting, first_guess, fit, phase_name,
+    Field, FieldShooter, Fit, FlowModel, LENGTHS, Posterior, Running, Shooting, first_guess, fit,
+    longest_as_good, phase_name,
 };
 use crate::judge::validation_error;
 use crate::{Context, Fitted, LearnError, Model, Stored};
@@ -20,9 +21,6 @@ pub struct Finishing {
     /// Largest number of steps of each refit.
     pub most_steps: u64,
 }
-
-/// A longer piece is preferred if its validation error is within this factor of the smallest.
-const AS_GOOD: f64 = 1.02;
 
 /// Builds a model of a law. `weights` and `inclusion` belong to the library's terms; terms that were left out
 /// have a weight of 0.
@@ -168,9 +166,7 @@ fn refitted(
         from.weights = from.terms.iter().map(|term| weight_of(term).unwrap_or(0.0)).collect();
         found.push((error, law));
     }
-    let best = found.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
-    let chosen = found.into_iter().rev().find(|(error, _)| *error <= AS_GOOD * best || !best.is_finite());
-    Ok(chosen.map(|(_, law)| (law, steps)))
+    Ok(longest_as_good(found).map(|law| (law, steps)))
 }
 
 /// Restores the model of a sparse learner from a file.

@@ -1,11 +1,10 @@
 //! Fits on pieces that grow from two periods to whole parts.
 
 use crate::data::DataSet;
-use crate::flow::{Field, FieldShooter, Fit, LENGTHS, Penalty, Shooting, first_guess, fit, phase_name};
+use crate::flow::{
+    Field, FieldShooter, Fit, LENGTHS, Penalty, Shooting, first_guess, fit, longest_as_good, phase_name,
+};
 use crate::{Context, LearnError};
-
-/// A longer piece is preferred if its validation error is within this factor of the smallest.
-const AS_GOOD: f64 = 1.02;
 
 /// Limits of a progressive fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +51,5 @@ pub fn progressive(
             Err(other) => return Err(other),
         }
     }
-    let best = found.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
-    let chosen = found.into_iter().rev().find(|(error, _)| *error <= AS_GOOD * best || !best.is_finite());
-    chosen.map(|(_, fit)| (fit, steps)).ok_or(LearnError::Interrupted)
+    longest_as_good(found).map(|fit| (fit, steps)).ok_or(LearnError::Interrupted)
 }
