@@ -96,17 +96,18 @@ impl Searched {
         let singles = singles.filter(|set| smaller.iter().all(|one| one.hypothesis != set.hypothesis));
         let asked: Vec<&Fit> =
             std::iter::once(*best).chain(singles.take(SINGLES).copied()).chain(&smaller).collect();
-        let short = |set: &Fit| shortened(&own.coarse, &self.interval.data, set).ok();
+        let short = |set: &&Fit| shortened(&own.coarse, &self.interval.data, set).ok();
+        let short: Vec<Option<Fit>> = asked.par_iter().map(short).collect();
         // The best set leaves the least, so that the others need no more knots than it does.
-        let at = short(best)?;
+        let at = short.first()?.as_ref()?;
         let [own_data, other_data] =
-            [own, other].map(|question| question.data.with_fewer_knots(question.data.spare_knots(&at)));
-        let again = |set: &&Fit| {
-            let Fit { hypothesis, point, .. } = short(set)?;
-            let on = |data: &Data| fit(data, &hypothesis, point.clone(), Moving::All, Stopping::SEARCH).ok();
+            [own, other].map(|question| question.data.with_fewer_knots(question.data.spare_knots(at)));
+        let again = |set: &Option<Fit>| {
+            let Fit { hypothesis, point, .. } = set.as_ref()?;
+            let on = |data: &Data| fit(data, hypothesis, point.clone(), Moving::All, Stopping::SEARCH).ok();
             Some((on(&own_data)?, on(&other_data)?))
         };
-        let fits: Vec<Option<(Fit, Fit)>> = asked.par_iter().map(again).collect();
+        let fits: Vec<Option<(Fit, Fit)>> = short.par_iter().map(again).collect();
         let both = || fits.iter().zip(&asked).filter_map(|(fits, set)| Some((fits.as_ref()?, *set)));
         let closest = both().min_by(|a, b| a.0.0.squares.total_cmp(&b.0.0.squares))?;
         let time = closest.0.0.autocorrelation_time();
