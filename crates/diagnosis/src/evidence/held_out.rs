@@ -1,8 +1,9 @@
 //! Held-out prediction: residuals of a hypothesis on parts of the records that it was not fitted to.
 
 use crate::data::segments::{Data, Segment};
-use crate::fit::fitted::{Fit, Point};
-use crate::fit::levenberg_marquardt::{Moving, fit, residuals};
+use crate::data::shooting_interval::Origin;
+use crate::fit::fitted::{Fit, Point, extended};
+use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::DynamicsError;
@@ -47,6 +48,12 @@ const BLOCK: f64 = 0.75;
 /// Number of turns in which blocks are held out.
 const TURNS: usize = 4;
 
+/// Scales residuals up for the degrees of freedom that fitted start values have taken.
+fn for_freedom(residual: &DVector<f64>, starts: usize) -> DVector<f64> {
+    let count = residual.len() as f64;
+    residual * (count / (count - starts as f64).max(1.0)).sqrt()
+}
+
 /// Residuals of parts, each with the part's index.
 type Numbered = Vec<(usize, DVector<f64>)>;
 
@@ -60,17 +67,36 @@ pub(crate) struct Both<'a> {
 }
 
 impl Both<'_> {
-    /// Fits the parts that `train` selects, on the longer shooting interval. Also returns the indices of the
-    /// remaining segments.
+    /// Fits the parts that `train` selects, on the longer shooting interval. Also returns where the segments of
+    /// that fit begin.
     fn learned(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
         moving: Moving,
-    ) -> Result<(Fit, Vec<usize>), DynamicsError> {
-        let (masked, numbers) = self.longer.masked(train);
-        let own = numbers.iter().filter_map(|&number| self.followed.point.starts.get(number).cloned());
-        let point = Point { globals: self.followed.point.globals.clone(), starts: own.collect() };
-        Ok((fit(&masked, &self.followed.hypothesis, point, moving, Stopping::HELD_OUT)?, numbers))
+    ) -> Result<(Fit, Vec<Origin>), DynamicsError> {
+        let (masked, origins) = self.longer.masked(train);
+        Ok((self.fitted_to(masked, &origins, moving)?, origins))
+    }
+
+    /// Fits a part of the data, from the followed motion on.
+    fn fitted_to(&self, mut part: Data, origins: &[Origin], moving: Moving) -> Result<Fit, DynamicsError> {
+        let Fit { hypothesis, point, .. } = self.followed;
+        let mut simulator = Simulator::new(self.longer, hypothesis, &point.globals, Derivatives::None)?;
+        let mut starts = Vec::with_capacity(origins.len());
+        for (own, origin) in part.segments.iter_mut().zip(origins) {
+            let known = self.longer.segments.get(origin.segment).zip(point.starts.get(origin.segment));
+            let Some((segment, start)) = known else { continue };
+            if origin.sample == 0 {
+                starts.push(start.clone());
+                continue;
+            }
+            let motion = simulator.motion(segment, start)?;
+            let state = motion.position.get(origin.sample).zip(motion.velocity.get(origin.sample));
+            own.guess = state.map_or(own.guess, |(position, velocity)| [*position, *velocity]);
+            starts.push(extended(&own.guess, hypothesis));
+        }
+        let point = Point { globals: point.globals.clone(), starts };
+        fit(&part, hypothesis, point, moving, Stopping::HELD_OUT)
     }
 
     /// Returns the residuals of the segments that `train` does not select, with only start states fitted to
@@ -112,17 +138,17 @@ impl Both<'_> {
     }
 
     /// Returns the residuals, with their indices, of the parts that `train` does not select; nothing is fitted
-    /// to them. `learned` is the fit of the others, with the indices of its segments.
+    /// to them. `learned` is the fit of the others, whose segments begin with those of the data.
     fn continued(
         &self,
         train: &dyn Fn(usize) -> bool,
-        (learned, numbers): &(Fit, Vec<usize>),
+        (learned, origins): &(Fit, Vec<Origin>),
     ) -> Result<Numbered, DynamicsError> {
         let mut simulator =
             Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, Derivatives::None)?;
         let mut all = Vec::new();
-        for (&number, start) in numbers.iter().zip(&learned.point.starts) {
-            if let Some(segment) = self.longer.segments.get(number) {
+        for (origin, start) in origins.iter().zip(&learned.point.starts) {
+            if let Some(segment) = self.longer.segments.get(origin.segment) {
                 all.push(simulator.predict(segment, start)?.residual);
             }
         }
@@ -149,16 +175,23 @@ impl Both<'_> {
         Some(self.longer.segments.iter().map(of).collect())
     }
 
-    /// Returns the residuals of the samples held out in each turn; the fitted motion continues into them.
+    /// Returns the residuals of the samples held out in each turn. The coefficients are fitted to the other
+    /// samples. The start states, which belong to the record and not to the law, are then fitted to all samples,
+    /// and the residuals are scaled up for the degrees of freedom that they take: in a strongly damped motion
+    /// nothing but the first samples determines them.
     fn by_turns(&self, turns: &[Vec<usize>], moving: Moving) -> Result<Vec<DVector<f64>>, DynamicsError> {
         let turn_of = |segment: usize, sample: usize| turns.get(segment).and_then(|own| own.get(sample));
         let learned: Vec<Vec<DVector<f64>>> = (0..TURNS)
             .into_par_iter()
             .map(|turn| {
-                let train = self.longer.keeping(|segment, sample| turn_of(segment, sample) != Some(&turn));
-                let point = self.followed.point.clone();
-                let learned = fit(&train, &self.followed.hypothesis, point, moving, Stopping::HELD_OUT)?;
-                residuals(self.longer, &learned)
+                let (train, origins) =
+                    self.longer.keeping(|segment, sample| turn_of(segment, sample) != Some(&turn));
+                let globals = self.fitted_to(train, &origins, moving)?.point.globals;
+                let Fit { hypothesis, point, .. } = self.followed;
+                let point = Point { globals, starts: point.starts.clone() };
+                let all = fit(self.longer, hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?;
+                let starts = hypothesis.start_length();
+                Ok(all.residuals.iter().map(|own| for_freedom(own, starts)).collect())
             })
             .collect::<Result<_, DynamicsError>>()?;
         let held_out = |segment: usize, sample: usize| {
@@ -190,11 +223,7 @@ impl Both<'_> {
         let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
             .filter_map(|index| if even(index) { first.next() } else { second.next() })
             .collect();
-        let scaled = |own: &DVector<f64>| {
-            let freedom = (own.len() as f64 - starts as f64).max(1.0);
-            own * (own.len() as f64 / freedom).sqrt()
-        };
-        let mut continued: Vec<DVector<f64>> = residuals.iter().map(scaled).collect();
+        let mut continued: Vec<DVector<f64>> = residuals.iter().map(|own| for_freedom(own, starts)).collect();
         for (index, part) in first_continued.into_iter().chain(second_continued) {
             if let Some(own) = continued.get_mut(index) {
                 *own = part;
