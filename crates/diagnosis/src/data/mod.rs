@@ -9,3 +9,5 @@ pub(crate) mod release;
 pub(crate) mod scales;
 pub(crate) mod segments;
 pub(crate) mod shooting_interval;
+pub(crate) mod smoothed;
+pub(crate) mod split;

@@ -100,7 +100,7 @@ impl Data {
     }
 
     /// Returns `true` if any segment was joined from several.
-    pub(crate) fn is_joined(&self) -> bool {
+    fn is_joined(&self) -> bool {
         self.segments.iter().any(|segment| segment.parts.len() > 1)
     }
 }

@@ -14,21 +14,15 @@ use std::f64::consts::TAU;
 /// Residuals on held-out parts.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HeldOut {
-    /// Residuals by segment, in the order of the data; only start states were fitted to them.
+    /// Residuals by unjoined segment, in the order of the data, scaled up for the degrees of freedom that the
+    /// start states take.
     pub(crate) residuals: Vec<DVector<f64>>,
-    /// Number of start values fitted per segment.
-    pub(crate) starts: usize,
-    /// Residuals by segment of predictions that continue from the fitted parts: nothing is fitted to the
-    /// held-out parts, not even start states. The parts are segments, or blocks of samples if there are few
-    /// segments. In the first part of each shooting interval, and if segments are not joined, these are the
-    /// residuals with fitted start states, scaled up for the degrees of freedom that those take.
-    pub(crate) continued: Vec<DVector<f64>>,
 }
 
 impl HeldOut {
-    /// Returns the mean square over all segments, weighted by their samples.
+    /// Returns the mean square over all segments.
     pub(crate) fn mean_square(&self) -> f64 {
-        mean_square(&self.residuals, self.starts)
+        mean_square(&self.residuals, 0)
     }
 }
 
@@ -37,10 +31,6 @@ fn mean_square(residuals: &[DVector<f64>], starts: usize) -> f64 {
     let freedom: f64 = residuals.iter().map(|e| e.len() as f64 - starts as f64).sum();
     squares / freedom.max(1.0)
 }
-
-/// Fewest parts of the records that take turns at being held out. With fewer, a law learned from one half of
-/// a decaying swing would have to predict amplitudes that it never saw.
-const FEWEST: usize = 8;
 
 /// Fewest periods in a block. Not a multiple of a half, so that blocks fall on different sides of the swing.
 const BLOCK: f64 = 0.75;
@@ -54,9 +44,6 @@ fn for_freedom(residual: &DVector<f64>, starts: usize) -> DVector<f64> {
     residual * (count / (count - starts as f64).max(1.0)).sqrt()
 }
 
-/// Residuals of parts, each with the part's index.
-type Numbered = Vec<(usize, DVector<f64>)>;
-
 /// Fit on a shooting interval, and the same on the unjoined segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Both<'a> {
@@ -67,23 +54,20 @@ pub(crate) struct Both<'a> {
 }
 
 impl Both<'_> {
-    /// Fits the parts that `train` selects, on the longer shooting interval. Also returns where the segments of
-    /// that fit begin.
+    /// Returns the coefficients fitted to a part of the data, from the followed motion on. With
+    /// [`Moving::Starts`] these are the followed ones.
     fn learned(
         &self,
-        train: &(dyn Fn(usize) -> bool + Sync),
+        (mut part, origins): (Data, Vec<Origin>),
         moving: Moving,
-    ) -> Result<(Fit, Vec<Origin>), DynamicsError> {
-        let (masked, origins) = self.longer.masked(train);
-        Ok((self.fitted_to(masked, &origins, moving)?, origins))
-    }
-
-    /// Fits a part of the data, from the followed motion on.
-    fn fitted_to(&self, mut part: Data, origins: &[Origin], moving: Moving) -> Result<Fit, DynamicsError> {
+    ) -> Result<Vec<f64>, DynamicsError> {
         let Fit { hypothesis, point, .. } = self.followed;
+        if moving == Moving::Starts {
+            return Ok(point.globals.clone());
+        }
         let mut simulator = Simulator::new(self.longer, hypothesis, &point.globals, Derivatives::None)?;
         let mut starts = Vec::with_capacity(origins.len());
-        for (own, origin) in part.segments.iter_mut().zip(origins) {
+        for (own, origin) in part.segments.iter_mut().zip(&origins) {
             let known = self.longer.segments.get(origin.segment).zip(point.starts.get(origin.segment));
             let Some((segment, start)) = known else { continue };
             if origin.sample == 0 {
@@ -96,29 +80,7 @@ impl Both<'_> {
             starts.push(extended(&own.guess, hypothesis));
         }
         let point = Point { globals: point.globals.clone(), starts };
-        fit(&part, hypothesis, point, moving, Stopping::HELD_OUT)
-    }
-
-    /// Returns the residuals of the segments that `train` does not select, with only start states fitted to
-    /// them, and those of [`Self::continued`] if segments are joined.
-    fn scored(
-        &self,
-        train: &(dyn Fn(usize) -> bool + Sync),
-        moving: Moving,
-    ) -> Result<(Vec<DVector<f64>>, Numbered), DynamicsError> {
-        let learned = self.learned(train, moving)?;
-        let residuals = self.with_own_starts(train, &learned.0)?;
-        if !self.longer.is_joined() {
-            return Ok((residuals, Vec::new()));
-        }
-        // The first part is always fitted: predicting backward to it would be another question than
-        // continuing.
-        let firsts = self.longer.firsts();
-        if firsts.iter().all(|&first| train(first)) {
-            return Ok((residuals, self.continued(train, &learned)?));
-        }
-        let train = |index: usize| train(index) || firsts.contains(&index);
-        Ok((residuals, self.continued(&train, &self.learned(&train, moving)?)?))
+        Ok(fit(&part, hypothesis, point, moving, Stopping::HELD_OUT)?.point.globals)
     }
 
     /// Returns the residuals of the segments that `train` does not select, with only start states fitted to
@@ -126,53 +88,26 @@ impl Both<'_> {
     fn with_own_starts(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
-        learned: &Fit,
+        globals: Vec<f64>,
     ) -> Result<Vec<DVector<f64>>, DynamicsError> {
         let others = self.fitted.point.starts.iter().enumerate().filter(|(index, _)| !train(*index));
-        let point = Point {
-            globals: learned.point.globals.clone(),
-            starts: others.map(|(_, start)| start.clone()).collect(),
-        };
+        let point = Point { globals, starts: others.map(|(_, start)| start.clone()).collect() };
         let rest = self.segments.only(|index| !train(index));
         Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?.residuals)
     }
 
-    /// Returns the residuals, with their indices, of the parts that `train` does not select; nothing is fitted
-    /// to them. `learned` is the fit of the others, whose segments begin with those of the data.
-    fn continued(
-        &self,
-        train: &dyn Fn(usize) -> bool,
-        (learned, origins): &(Fit, Vec<Origin>),
-    ) -> Result<Numbered, DynamicsError> {
-        let mut simulator =
-            Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, Derivatives::None)?;
-        let mut all = Vec::new();
-        for (origin, start) in origins.iter().zip(&learned.point.starts) {
-            if let Some(segment) = self.longer.segments.get(origin.segment) {
-                all.push(simulator.predict(segment, start)?.residual);
-            }
-        }
-        let parts = self.longer.by_part(&all).into_iter().enumerate();
-        Ok(parts.filter(|(index, _)| !train(*index)).collect())
-    }
-
-    /// Returns the turn in which each sample is held out, if there are too few segments to take turns; `None`
-    /// otherwise.
-    fn turns(&self) -> Option<Vec<Vec<usize>>> {
-        if self.segments.segments.len() >= FEWEST {
-            return None;
-        }
+    /// Returns the turn in which each sample is held out. Every segment has blocks of all turns, so that no
+    /// turn has to predict an amplitude that the others never saw.
+    fn turns(&self) -> Vec<Vec<usize>> {
         let period = TAU / self.longer.facts.frequency;
-        let spans = || self.longer.segments.iter().map(Segment::span);
-        // Every segment has blocks of all turns, so that the other blocks determine its start state.
-        let shortest = spans().fold(f64::INFINITY, f64::min) / TURNS as f64;
-        let length = (spans().sum::<f64>() / FEWEST as f64).min(shortest).max(BLOCK * period);
+        let shortest = self.segments.segments.iter().map(Segment::span).fold(f64::INFINITY, f64::min);
+        let length = (shortest / TURNS as f64).max(BLOCK * period);
         let of = |segment: &Segment| {
             // A segment without samples has no blocks.
             let first = segment.times.first().copied().unwrap_or_default();
             segment.times.iter().map(|time| ((time - first) / length) as usize % TURNS).collect()
         };
-        Some(self.longer.segments.iter().map(of).collect())
+        self.longer.segments.iter().map(of).collect()
     }
 
     /// Returns the residuals of the samples held out in each turn. The coefficients are fitted to the other
@@ -184,9 +119,8 @@ impl Both<'_> {
         let learned: Vec<Vec<DVector<f64>>> = (0..TURNS)
             .into_par_iter()
             .map(|turn| {
-                let (train, origins) =
-                    self.longer.keeping(|segment, sample| turn_of(segment, sample) != Some(&turn));
-                let globals = self.fitted_to(train, &origins, moving)?.point.globals;
+                let train = self.longer.keeping(|segment, sample| turn_of(segment, sample) != Some(&turn));
+                let globals = self.learned(train, moving)?;
                 let Fit { hypothesis, point, .. } = self.followed;
                 let point = Point { globals, starts: point.starts.clone() };
                 let all = fit(self.longer, hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?;
@@ -207,29 +141,10 @@ impl Both<'_> {
         Ok(self.longer.by_part(&all))
     }
 
-    /// Returns residuals on interleaved segments: fitted to the even ones and scored on the odd ones, and the
-    /// other way round. With few segments, blocks of samples are held out in turns instead. With
-    /// [`Moving::Starts`] no coefficient is fitted.
+    /// Returns the residuals of blocks of samples that are held out in turns. With [`Moving::Starts`] no
+    /// coefficient is fitted.
     pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
-        if let Some(turns) = self.turns() {
-            let residuals = self.by_turns(&turns, moving)?;
-            return Ok(HeldOut { continued: residuals.clone(), residuals, starts: 0 });
-        }
-        let (even, odd) = (|index: usize| index.is_multiple_of(2), |index: usize| !index.is_multiple_of(2));
-        let starts = self.fitted.hypothesis.start_length();
-        let (first, second) = rayon::join(|| self.scored(&odd, moving), || self.scored(&even, moving));
-        let ((first, first_continued), (second, second_continued)) = (first?, second?);
-        let (mut first, mut second) = (first.into_iter(), second.into_iter());
-        let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
-            .filter_map(|index| if even(index) { first.next() } else { second.next() })
-            .collect();
-        let mut continued: Vec<DVector<f64>> = residuals.iter().map(|own| for_freedom(own, starts)).collect();
-        for (index, part) in first_continued.into_iter().chain(second_continued) {
-            if let Some(own) = continued.get_mut(index) {
-                *own = part;
-            }
-        }
-        Ok(HeldOut { residuals, starts, continued })
+        Ok(HeldOut { residuals: self.by_turns(&self.turns(), moving)? })
     }
 
     /// Returns the mean square error on the last third of the segments, fitted to the first two thirds.
@@ -237,8 +152,8 @@ impl Both<'_> {
         let count = self.segments.segments.len();
         let first = count.saturating_sub((count / 3).max(1));
         let train = |index: usize| index < first;
-        let (learned, _) = self.learned(&train, moving)?;
-        let scored = self.with_own_starts(&train, &learned)?;
+        let learned = self.learned(self.longer.masked(&train), moving)?;
+        let scored = self.with_own_starts(&train, learned)?;
         Ok(mean_square(&scored, self.fitted.hypothesis.start_length()))
     }
 }

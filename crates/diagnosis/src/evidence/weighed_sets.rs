@@ -63,7 +63,7 @@ impl Basis {
     /// Returns the residuals of a set by segment.
     fn residuals(self, records: &Records<'_>, set: &Fit, held_out: &HeldOut) -> Vec<DVector<f64>> {
         match self {
-            Self::HeldOut => held_out.continued.clone(),
+            Self::HeldOut => held_out.residuals.clone(),
             Self::Fitted => records.data.by_part(&set.residuals),
         }
     }

@@ -36,7 +36,7 @@ fn by_block(squares: &[f64], scale: f64) -> Vec<f64> {
 fn held_out(held: &HeldOut) -> Squares {
     let own = |e: &DVector<f64>| {
         let squares: Vec<f64> = e.iter().map(|e| e * e).collect();
-        by_block(&squares, e.len() as f64 / (e.len() as f64 - held.starts as f64).max(1.0))
+        by_block(&squares, 1.0)
     };
     held.residuals.iter().map(own).collect()
 }
@@ -105,7 +105,7 @@ pub(crate) fn gap(
         .repaired
         .residuals
         .iter()
-        .map(|e| (e.len() as f64 - stages.repaired.starts as f64).max(1.0))
+        .map(|e| e.len() as f64)
         .sum();
     let left: f64 = stages.ceiling.iter().map(DVector::norm_squared).sum();
     Gap {

@@ -20,7 +20,7 @@ use std::ops::Range;
 pub(crate) struct Entry {
     pub(crate) candidate: Candidate,
     /// Fit parameters at which the columns are computed.
-    shape: Vec<f64>,
+    pub(crate) shape: Vec<f64>,
     pub(crate) columns: Range<usize>,
     /// `true` if the coefficients cannot be negative.
     positive: bool,
@@ -162,6 +162,36 @@ impl Dictionary {
             entries,
             further,
             frequencies: frequencies(data),
+        }
+    }
+
+    /// Creates a dictionary of entries with given columns, one after the other, `counts` of each entry.
+    /// `columns` and `residual` are projected, `raw` are the columns before that.
+    pub(crate) fn of_columns(
+        entries: Vec<(Candidate, Vec<f64>)>,
+        counts: &[usize],
+        raw: &DMatrix<f64>,
+        mut columns: DMatrix<f64>,
+        residual: &DMatrix<f64>,
+    ) -> Self {
+        for (mut column, raw) in columns.column_iter_mut().zip(raw.column_iter()) {
+            if column.norm() <= INVISIBLE * raw.norm() {
+                column.fill(0.0);
+            }
+        }
+        let mut from = 0;
+        let entry = |((candidate, shape), count): ((Candidate, Vec<f64>), &usize)| {
+            let columns = from..from + count;
+            from += count;
+            Entry { positive: candidate.is_non_negative(), candidate, shape, columns }
+        };
+        Self {
+            entries: entries.into_iter().zip(counts).map(entry).collect(),
+            products: columns.tr_mul(&columns),
+            scores: columns.tr_mul(residual).column(0).clone_owned(),
+            columns,
+            further: Vec::new(),
+            frequencies: 1.0,
         }
     }
 

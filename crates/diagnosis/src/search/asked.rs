@@ -3,6 +3,7 @@
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
+use crate::search::weak_form::Proposed;
 
 /// Breadth of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,8 @@ pub(crate) struct Asked<'a> {
     /// Recalibrated simulator, where a search begins.
     pub(crate) calibrated: &'a Fit,
     pub(crate) candidates: &'a [Candidate],
+    /// Sets that the weak form proposes.
+    pub(crate) proposed: &'a Proposed,
     pub(crate) breadth: &'a Breadth,
     /// Increase of the score that an additional effect has to bring for the search to continue.
     pub(crate) threshold: f64,

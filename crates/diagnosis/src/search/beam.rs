@@ -15,12 +15,12 @@ use crate::model::candidate::Candidate;
 use crate::model::dictionary::{Dictionary, Gain};
 use crate::search::archive::{Archive, is_another};
 use crate::search::asked::Asked;
+use crate::search::from_afar::from_afar;
 use crate::search::gains::{pairs, promising, singles, stands_alone, stands_out};
 use crate::search::proposals::{
     Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, reshaped, simplified,
     take_in,
 };
-use crate::search::weak_form::from_weak_form;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -125,7 +125,7 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
 
 /// Runs the first round: single candidates and pairs at the recalibrated simulator.
 fn begin(asked: &Asked<'_>, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>) {
-    let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
+    let &Asked { data, calibrated, candidates, breadth, threshold, .. } = asked;
     let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return };
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
@@ -174,7 +174,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
     }
     if !begun {
         begin(asked, &mut archive, &mut tried);
-        from_weak_form(data, calibrated, asked.candidates, &mut archive);
+        from_afar(asked, &mut archive);
     }
     let mut explored = Explored { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() };
     go_on(asked, &mut explored);

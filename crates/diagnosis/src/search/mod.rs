@@ -5,6 +5,7 @@ pub(crate) mod archive;
 pub(crate) mod asked;
 pub(crate) mod beam;
 pub(crate) mod chains;
+pub(crate) mod from_afar;
 pub(crate) mod gains;
 pub(crate) mod nameless;
 pub(crate) mod null;

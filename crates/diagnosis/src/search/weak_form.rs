@@ -1,265 +1,413 @@
-//! Initial points for sets of plain laws from the weak form of the equation of motion.
+//! Sets of laws that the weak form of the equation of motion prefers, with values to begin their fits at.
 //!
-//! Fits of trajectories begin at the recalibrated simulator. That is a poor start if a missing law outweighs
-//! the laws of the simulator: if a spring stiffens strongly under an input, the closest linear oscillator is
-//! one that the input does not move. The weak form needs no trajectory. Multiplied by a bump φ and integrated
-//! by parts over it, the equation of motion I·ẍ + c·ẋ + k·(x − x₀) = u + Σ bⱼ·τⱼ is linear in I, c, k, k·x₀
-//! and bⱼ, with derivatives of φ in place of those of the record (Messenger and Bortz, "Weak SINDy for
-//! partial differential equations", Journal of Computational Physics 443, 2021). Noise biases the solution,
-//! so it is only a start for a fit.
+//! A fit of trajectories that begins at the recalibrated simulator is lost if a missing law outweighs the laws
+//! of the simulator, or if it has a shape (the width of a play, the place of a stop) that is far off. The weak
+//! form needs no trajectory. Multiplied by a bump φ and integrated by parts over it, the equation of motion
+//! I·ẍ + c·ẋ + k·(x − x₀) = u + Σ bⱼ·τⱼ is linear in I, c, k, k·x₀ and bⱼ, with derivatives of φ in place of
+//! those of the record (Messenger and Bortz, "Weak SINDy for partial differential equations", Journal of
+//! Computational Physics 443, 2021). Here x is the smoothed record, and every law takes part at each shape of a
+//! dense grid. Effects of the sensor take no part: with an error in proportion to the motion nothing would be
+//! left of the equation. A smoothed record holds noise that it
+//! is asked to explain, so the solution is a start for a fit and no evidence.
 
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
-use crate::fit::fitted::{Fit, Point, first_starts};
-use crate::fit::levenberg_marquardt::{Moving, fit};
-use crate::fit::stopping::Stopping;
+use crate::data::smoothed::smoothed;
+use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::Along;
+use crate::model::dictionary::{Dictionary, Gain};
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::matrices::solve;
-use crate::search::archive::Archive;
-use crate::search::proposals::CLOSER;
+use crate::model::predictor::Motion;
+use crate::noise::floor;
 use dynamics::weak_form::test_function;
-use dynamics::{Coefficients, Input};
+use dynamics::{Coefficients, Input, Nominal};
 use nalgebra::DMatrix;
-use record::Quantity;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Length of a bump in periods, and the number of bumps that begin within one length.
-const PERIODS: f64 = 0.75;
+const PERIODS: f64 = 0.5;
 const OVERLAP: f64 = 4.0;
 
 /// Exponent n of a bump (1 − s²)ⁿ.
 const EXPONENT: i32 = 4;
 
-/// Fewest samples in a bump.
+/// Samples in a bump: its length where the readings are sparse, and the fewest where some are missing.
+const ENOUGH: f64 = 12.0;
 const FEWEST: usize = 8;
 
-/// Fewest bumps for each unknown.
-const ROWS: usize = 4;
+/// Fewest bumps for each unknown of the oscillator.
+const ROWS: usize = 8;
 
-/// Fits the plain sets that the weak form prefers, one of each size, if they begin closer to the data than
-/// any fit of the archive ended.
-pub(crate) fn from_weak_form(data: &Data, calibrated: &Fit, candidates: &[Candidate], archive: &mut Archive) {
-    let laws: Vec<Candidate> = candidates.iter().copied().filter(|law| law.is_plain()).collect();
-    let Some(equations) = Equations::of(data, calibrated, &laws) else { return };
-    for size in 1..=laws.len() {
-        let sets = (0_u32..1 << laws.len()).filter(|set| set.count_ones() as usize == size);
-        let solved = sets.filter_map(|set| equations.solved(data, &calibrated.hypothesis, set));
-        let Some(best) = solved.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { continue };
-        let ended = archive.fits.iter().map(|fit| fit.squares).fold(f64::INFINITY, f64::min);
-        let starts = first_starts(data, &best.hypothesis);
-        let point = Point { globals: best.globals, starts };
-        let begun = fit(data, &best.hypothesis, point, Moving::Starts, Stopping::SEARCH);
-        if let Ok(begun) = begun.as_ref()
-            && begun.squares < CLOSER * ended
-            && let Ok(set) = fit(data, &best.hypothesis, begun.point.clone(), Moving::All, Stopping::SEARCH)
-        {
-            archive.admit(data, set);
-        }
+/// Number of sets of each size that are extended, and that are returned.
+const WIDTH: usize = 10;
+const BEST: usize = 3;
+
+/// Set of laws with the values at which its fit begins.
+#[derive(Debug)]
+pub(crate) struct Begun {
+    pub(crate) hypothesis: Hypothesis,
+    pub(crate) globals: Vec<f64>,
+}
+
+/// Sets that the weak form proposes, and the motion that they begin at.
+#[derive(Debug, Default)]
+pub(crate) struct Proposed {
+    pub(crate) sets: Vec<Begun>,
+    /// Times with position and velocity, by record.
+    states: Vec<Vec<(f64, [f64; 2])>>,
+}
+
+impl Proposed {
+    /// Proposes the best sets of up to `most` laws: with a free rest angle, and with the stated one.
+    pub(crate) fn of(data: &Data, calibrated: &Fit, candidates: &[Candidate], most: usize) -> Self {
+        let hypothesis = &calibrated.hypothesis;
+        let stated = hypothesis.calibrated.contains(&Calibrated::RestAngle).then(|| hypothesis.nominal.rest_angle());
+        let rests: Vec<Option<f64>> = [None].into_iter().chain(stated.map(Some)).collect();
+        let found = rests.par_iter().map(|rest| WeakForm::of(data, calibrated, candidates, *rest));
+        let found: Vec<Option<(Self, Vec<Begun>)>> = found.map(|own| own.map(|own| (own.motion(), own.sets(most)))).collect();
+        found.into_iter().flatten().fold(Self::default(), |all, (motion, sets)| {
+            Self { sets: all.sets.into_iter().chain(sets).collect(), ..motion }
+        })
+    }
+
+    /// Returns position and velocity of a record at a time of one of its samples, or of the next one.
+    pub(crate) fn state(&self, record: usize, time: f64) -> Option<[f64; 2]> {
+        let states = self.states.get(record)?;
+        let at = states.partition_point(|(own, _)| *own < time);
+        states.get(at).or(states.last()).map(|(_, state)| *state)
     }
 }
 
-/// Linear equations of the weak form, one row for each bump.
-struct Equations {
-    /// ∫φ̈·x, −∫φ̇·x, ∫φ·x and −∫φ: the factors of inertia, damping, stiffness, and stiffness times rest
-    /// angle.
-    oscillator: Vec<[f64; 4]>,
-    /// ∫φ·u, plus the integrals of the torques of known effects.
-    torque: Vec<f64>,
-    /// ∫φ·τ of every law's columns.
-    laws: Vec<(Candidate, Vec<Vec<f64>>)>,
+/// Equations of the weak form, one row for each bump.
+struct WeakForm<'a> {
+    data: &'a Data,
+    hypothesis: &'a Hypothesis,
+    /// Closest oscillator.
+    nominal: Nominal,
+    /// `true` for each of the oscillator's terms that is solved for.
+    free: [bool; 4],
+    /// Runs of joined segments with their smoothed motions.
+    runs: Vec<(Segment, Motion)>,
+    /// Columns of the oscillator's free coefficients, and the torque that the others leave.
+    oscillator: DMatrix<f64>,
+    torque: DMatrix<f64>,
+    /// Columns of the laws; `dictionary` has them without what the oscillator absorbs.
+    laws: DMatrix<f64>,
+    dictionary: Dictionary,
 }
 
-/// Set with coefficients, and the squares that the equations leave.
-struct Solved {
-    hypothesis: Hypothesis,
-    globals: Vec<f64>,
-    squares: f64,
-}
-
-impl Equations {
-    /// Returns the equations of a data set; `None` if the sensor does not show the position, if there are no
-    /// laws, or if there are too few samples.
-    fn of(data: &Data, calibrated: &Fit, laws: &[Candidate]) -> Option<Self> {
-        if data.quantity != Quantity::Position || laws.is_empty() {
-            return None;
-        }
+impl<'a> WeakForm<'a> {
+    /// Sets up the equations of a data set; `None` if there are no laws or too few samples. Laws about the rest
+    /// angle, such as a play, have their middle at the `rest` angle if one is given, and a constant torque is
+    /// then one of the laws; otherwise the rest angle is free.
+    fn of(
+        data: &'a Data,
+        calibrated: &'a Fit,
+        candidates: &[Candidate],
+        rest: Option<f64>,
+    ) -> Option<Self> {
         let hypothesis = &calibrated.hypothesis;
-        let mut all = Self {
-            oscillator: Vec::new(),
-            torque: Vec::new(),
-            laws: laws.iter().map(|law| (*law, Vec::new())).collect(),
+        let found = hypothesis.calibrated_nominal(&calibrated.point.globals).ok()?;
+        let own = found.coefficients();
+        let rest_angle = rest.unwrap_or(own.rest_angle);
+        let nominal = found.with_coefficients(Coefficients { rest_angle, ..own }).ok()?;
+        let free = Calibrated::PLAIN.map(|own| {
+            hypothesis.calibrated.contains(&own) && (own != Calibrated::RestAngle || rest.is_none())
+        });
+        let noise = floor::floor(data, &calibrated.residuals).value;
+        let runs = data.joined(usize::MAX).segments;
+        let smoothed = |run: Segment| {
+            let motion = smoothed(data, &run, &nominal, noise);
+            (run, motion)
         };
-        let nominal = hypothesis.nominal.coefficients();
-        let units = |law: &Candidate| {
-            let shape = law.shapes(&data.facts).into_iter().next();
-            shape.map_or_else(Vec::new, |shape| law.unit_values(&shape, &data.facts))
+        let runs: Vec<(Segment, Motion)> = runs.into_par_iter().map(smoothed).collect();
+        let entries: Vec<(Candidate, Vec<f64>)> = candidates
+            .iter()
+            .filter(|law| law.system().is_some())
+            .flat_map(|law| law.dense_shapes(&data.facts).into_iter().map(|shape| (*law, shape)))
+            .collect();
+        let mut rows = Rows::default();
+        for run in &runs {
+            let seen = Seen::of(data, run, &nominal, rest.is_none());
+            rows.add(&seen, hypothesis, &entries);
+        }
+        rows.equations(data, hypothesis, (nominal, free), runs, entries)
+    }
+
+    /// Returns the smoothed motion, without sets.
+    fn motion(&self) -> Proposed {
+        let state = |((time, position), velocity): ((&f64, &f64), &f64)| (*time, [*position, *velocity]);
+        let mut states: Vec<Vec<(f64, [f64; 2])>> = vec![Vec::new(); self.data.inputs.len()];
+        for (run, motion) in &self.runs {
+            let own = run.times.iter().zip(&motion.position).zip(&motion.velocity).map(state);
+            states.iter_mut().skip(run.record).take(1).for_each(|known| known.extend(own.clone()));
+        }
+        Proposed { sets: Vec::new(), states }
+    }
+
+    /// Returns the best sets of up to `most` laws, with the values that solve the equations.
+    fn sets(&self, most: usize) -> Vec<Begun> {
+        let mut kept: Vec<Gain> = vec![Gain { entries: Vec::new(), squares: 0.0, coefficients: Vec::new() }];
+        let mut found = Vec::new();
+        for _ in 0..most {
+            kept = self.extended(&kept);
+            found.extend(kept.iter().take(BEST).filter_map(|gain| self.begun(gain)));
+        }
+        found
+    }
+
+    /// Returns the best sets with one law more, each with its best shapes.
+    fn extended(&self, sets: &[Gain]) -> Vec<Gain> {
+        let mut best: Vec<(Vec<usize>, Gain)> = Vec::new();
+        let mut take = |gain: Gain| {
+            let ranks = self.ranks(&gain);
+            match best.iter_mut().find(|(known, _)| *known == ranks) {
+                Some((_, known)) if gain.squares > known.squares => *known = gain,
+                Some(_) => {}
+                None => best.push((ranks, gain)),
+            }
         };
-        let known =
-            hypothesis.known.iter().map(|own| (own.candidate, vec![own.candidate.values(&own.stated)]));
-        let known: Vec<(Candidate, Vec<Vec<f64>>)> = known.collect();
-        for segment in &data.segments {
-            let seen = Seen::of(data, segment, nominal.input_gain);
-            let columns =
-                |law: Candidate, values: &[Vec<f64>]| seen.columns(law, values, &data.facts, &nominal);
-            let own: Vec<Vec<Vec<f64>>> = laws.iter().map(|law| columns(*law, &units(law))).collect();
-            let stated: Vec<Vec<f64>> =
-                known.iter().flat_map(|(law, values)| columns(*law, values)).collect();
-            let ones = vec![1.0; segment.times.len()];
-            for bump in bumps(&segment.times, PERIODS * TAU / data.facts.frequency) {
-                let integral = |values: &[f64]| {
-                    let [integral, ..] = bump.integrals(values);
-                    integral
-                };
-                let [position, slope, bend] = bump.integrals(&segment.values);
-                all.oscillator.push([bend, -slope, position, -integral(&ones)]);
-                let acting = std::iter::once(&seen.input).chain(&stated);
-                all.torque.push(acting.map(|torque| integral(torque)).sum());
-                for ((_, rows), columns) in all.laws.iter_mut().zip(&own) {
-                    rows.push(columns.iter().map(|column| integral(column)).collect());
+        let all = 0..self.dictionary.entries.len();
+        for set in sets {
+            for entry in all.clone().filter(|entry| self.fits(&set.entries, *entry)) {
+                self.dictionary.gain(&[set.entries.as_slice(), &[entry]].concat()).into_iter().for_each(&mut take);
+            }
+        }
+        let mut best: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+        best.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+        best.truncate(WIDTH);
+        let mut best: Vec<Gain> = best.into_iter().map(|gain| self.reshaped(gain)).collect();
+        best.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+        best
+    }
+
+    /// Returns a set with the best shape of each member, given those of the others.
+    fn reshaped(&self, gain: Gain) -> Gain {
+        let mut best = gain;
+        for place in 0..best.entries.len() {
+            let Some(candidate) = best.entries.get(place).and_then(|entry| self.candidate(*entry)) else { continue };
+            for entry in (0..self.dictionary.entries.len()).filter(|own| self.candidate(*own) == Some(candidate)) {
+                let mut entries = best.entries.clone();
+                entries.iter_mut().skip(place).take(1).for_each(|own| *own = entry);
+                if let Some(other) = self.dictionary.gain(&entries).filter(|own| own.squares > best.squares) {
+                    best = other;
                 }
             }
         }
-        (!all.torque.is_empty()).then_some(all)
+        best
     }
 
-    /// Solves the equations for a set by least squares; the bits of `set` are its members. `None` if a
-    /// coefficient that cannot be negative is.
-    fn solved(&self, data: &Data, hypothesis: &Hypothesis, set: u32) -> Option<Solved> {
-        let members = self.laws.iter().enumerate().filter(|(place, _)| set >> place & 1 == 1);
-        let members: Vec<&(Candidate, Vec<Vec<f64>>)> = members.map(|(_, law)| law).collect();
-        let (oscillator, sizes, squares) = self.regressed(hypothesis, &members)?;
-        let of_oscillator = |(which, stated): (&Calibrated, f64)| match which.free() {
-            Some(_) => which.of(&oscillator),
-            None => stated,
-        };
-        let calibrated = hypothesis.calibrated.iter().zip(hypothesis.nominal_point());
-        let mut globals: Vec<f64> = calibrated.map(of_oscillator).collect();
-        let mut sizes = sizes.as_slice();
-        for (law, _) in &members {
-            let shape = law.shapes(&data.facts).into_iter().next()?;
-            let (own, rest) = sizes.split_at_checked(law.unit_values(&shape, &data.facts).len())?;
+    fn candidate(&self, entry: usize) -> Option<Candidate> {
+        self.dictionary.entries.get(entry).map(|own| own.candidate)
+    }
+
+    fn ranks(&self, gain: &Gain) -> Vec<usize> {
+        let candidates = gain.entries.iter().filter_map(|entry| self.candidate(*entry));
+        let mut ranks: Vec<usize> = candidates.map(|own| own.rank()).collect();
+        ranks.sort_unstable();
+        ranks
+    }
+
+    /// Returns `true` if an entry's law is neither a member of a set nor the special case of one, or the other
+    /// way round.
+    fn fits(&self, set: &[usize], entry: usize) -> bool {
+        let Some(own) = self.candidate(entry) else { return false };
+        set.iter().filter_map(|entry| self.candidate(*entry)).all(|member| {
+            member != own && member.generalizes() != Some(own) && own.generalizes() != Some(member)
+        })
+    }
+
+    /// Returns the values at which the fit of a set begins; `None` if they are those of no oscillator.
+    fn begun(&self, gain: &Gain) -> Option<Begun> {
+        let columns: Vec<usize> =
+            gain.entries.iter().filter_map(|entry| self.dictionary.entries.get(*entry)).flat_map(|own| own.columns.clone()).collect();
+        let coefficients = DMatrix::from_column_slice(gain.coefficients.len(), 1, &gain.coefficients);
+        let rest = &self.torque - self.laws.select_columns(&columns) * coefficients;
+        let solution = solve(&self.oscillator.tr_mul(&self.oscillator), &self.oscillator.tr_mul(&rest))?;
+        let oscillator = self.oscillator_of(solution.as_slice())?;
+        let stated = self.hypothesis.nominal_point();
+        let calibrated = self.hypothesis.calibrated.iter().zip(stated);
+        let mut globals: Vec<f64> = calibrated
+            .map(|(which, stated)| if which.free().is_some() { which.of(&oscillator) } else { stated })
+            .collect();
+        let mut members: Vec<(Candidate, Vec<f64>)> = Vec::new();
+        let mut sizes = gain.coefficients.as_slice();
+        for entry in &gain.entries {
+            let own = self.dictionary.entries.get(*entry)?;
+            let (first, rest) = sizes.split_at_checked(own.columns.len())?;
             sizes = rest;
-            if law.is_non_negative() && own.iter().any(|size| *size < 0.0) {
-                return None;
-            }
-            globals.extend(law.linear_parameters(&shape, own));
+            // With the stiffness free, the coefficient of a law that is its own shape is not its secant's.
+            let values = if own.candidate.is_its_own_shape() { own.shape.clone() } else { self.dictionary.parameters(*entry, first) };
+            members.push((own.candidate, values));
         }
-        let set: Vec<Candidate> = members.iter().map(|(law, _)| *law).collect();
-        Some(Solved { hypothesis: hypothesis.with(&set), globals, squares })
+        members.sort_by_key(|(candidate, _)| candidate.rank());
+        let candidates: Vec<Candidate> = members.iter().map(|(candidate, _)| *candidate).collect();
+        globals.extend(members.into_iter().flat_map(|(_, values)| values));
+        let is_finite = globals.iter().all(|value| value.is_finite());
+        is_finite.then(|| Begun { hypothesis: self.hypothesis.with(&candidates), globals })
     }
 
-    /// Returns the oscillator's coefficients, the laws' sizes, and the squares that they leave. Coefficients
-    /// that are not calibrated keep their stated values.
-    fn regressed(
-        &self,
-        hypothesis: &Hypothesis,
-        laws: &[&(Candidate, Vec<Vec<f64>>)],
-    ) -> Option<(Coefficients<f64>, Vec<f64>, f64)> {
-        let stated = hypothesis.nominal.coefficients();
-        let mut terms =
-            [stated.inertia, stated.damping, stated.stiffness, stated.stiffness * stated.rest_angle];
-        let free: Vec<bool> =
-            Calibrated::PLAIN.iter().map(|own| hypothesis.calibrated.contains(own)).collect();
-        let mut rows: Vec<Vec<f64>> = Vec::new();
-        let mut right = Vec::new();
-        for (row, (oscillator, torque)) in self.oscillator.iter().zip(&self.torque).enumerate() {
-            let both = || oscillator.iter().zip(terms).zip(&free);
-            let held = both().filter(|(_, free)| !**free).map(|((term, value), _)| term * value);
-            right.push(torque - held.sum::<f64>());
-            let own = both().filter(|(_, free)| **free).map(|((term, _), _)| *term);
-            let laws = laws.iter().filter_map(|(_, law)| law.get(row)).flatten().map(|term| -term);
-            rows.push(own.chain(laws).collect());
-        }
-        let (solution, squares) = least_squares(&rows, &right)?;
-        let mut found = solution.into_iter();
-        for (term, _) in terms.iter_mut().zip(&free).filter(|(_, free)| **free) {
-            *term = found.next()?;
+    /// Returns the oscillator with the solved coefficients in place of those that are free.
+    fn oscillator_of(&self, solution: &[f64]) -> Option<Coefficients<f64>> {
+        let stated = self.nominal.coefficients();
+        let mut terms = terms(&stated);
+        let mut solved = solution.iter();
+        for (term, _) in terms.iter_mut().zip(self.free).filter(|(_, free)| *free) {
+            *term = *solved.next()?;
         }
         let [inertia, damping, stiffness, moment] = terms;
         let is_spring = stated.stiffness > 0.0;
         if inertia <= 0.0 || (is_spring && stiffness <= 0.0) {
             return None;
         }
-        let rest_angle = if is_spring { moment / stiffness } else { stated.rest_angle };
-        let found_oscillator =
-            Coefficients { inertia, damping: damping.max(0.0), stiffness, rest_angle, ..stated };
-        Some((found_oscillator, found.collect(), squares))
+        let [.., is_rest_free] = self.free;
+        let rest_angle = if is_spring && is_rest_free { moment / stiffness } else { stated.rest_angle };
+        // A rest angle far outside of the swing is that of another law.
+        let reach = 2.0 * self.data.facts.amplitude;
+        let rest_angle = rest_angle.clamp(stated.rest_angle - reach, stated.rest_angle + reach);
+        Some(Coefficients { inertia, damping: damping.max(0.0), stiffness, rest_angle, ..stated })
     }
 }
 
-/// Returns the least-squares solution of an overdetermined system, and the squares that it leaves.
-fn least_squares(rows: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, f64)> {
-    let count = rows.first()?.len();
-    if rows.len() < ROWS * count {
-        return None;
-    }
-    let design = DMatrix::from_fn(rows.len(), count, |row, column| {
-        // Every row has the same number of terms.
-        rows.get(row).and_then(|row| row.get(column)).copied().unwrap_or(0.0)
-    });
-    let right = DMatrix::from_column_slice(right.len(), 1, right);
-    let solution = solve(&design.tr_mul(&design), &design.tr_mul(&right))?;
-    let squares = (right - &design * &solution).norm_squared();
-    let solution = solution.as_slice().to_vec();
-    solution.iter().all(|value| value.is_finite()).then_some((solution, squares))
+/// Returns the coefficients of the oscillator's four terms.
+fn terms(own: &Coefficients<f64>) -> [f64; 4] {
+    [own.inertia, own.damping, own.stiffness, own.stiffness * own.rest_angle]
 }
 
-/// Segment with the velocity and the input torque at its samples.
+/// Rows of the equations as they are collected.
+#[derive(Default)]
+struct Rows {
+    /// ∫φ̈·x, −∫φ̇·x, ∫φ·x and −∫φ: the factors of inertia, damping, stiffness, and stiffness times rest
+    /// angle.
+    oscillator: Vec<[f64; 4]>,
+    /// ∫φ·u, plus the integrals of the torques of known effects.
+    torque: Vec<f64>,
+    /// ∫φ·τ of the laws' columns, and the number of columns of each entry.
+    laws: Vec<Vec<f64>>,
+    counts: Vec<usize>,
+}
+
+impl Rows {
+    fn add(&mut self, seen: &Seen<'_>, hypothesis: &Hypothesis, entries: &[(Candidate, Vec<f64>)]) {
+        let columns: Vec<Vec<Vec<f64>>> = entries.iter().map(|(law, shape)| seen.columns(*law, shape)).collect();
+        self.counts = columns.iter().map(Vec::len).collect();
+        let known = hypothesis.known.iter().filter_map(|own| seen.torque(own.candidate, &own.candidate.values(&own.stated)));
+        let acting: Vec<Vec<f64>> = known.chain([seen.input.clone()]).collect();
+        let ones = vec![1.0; seen.run.times.len()];
+        let period = TAU / seen.data.facts.frequency;
+        let rest_angle = seen.nominal.rest_angle();
+        for bump in bumps(&seen.run.times, period) {
+            let integral = |values: &[f64]| {
+                let [integral, ..] = bump.integrals(values);
+                integral
+            };
+            let [position, slope, bend] = bump.integrals(&seen.motion.position);
+            let one = integral(&ones);
+            let deflection = if seen.rest_is_free { position } else { position - rest_angle * one };
+            self.oscillator.push([bend, -slope, deflection, if seen.rest_is_free { -one } else { 0.0 }]);
+            self.torque.push(acting.iter().map(|torque| integral(torque)).sum());
+            self.laws.push(columns.iter().flatten().map(|column| integral(column)).collect());
+        }
+    }
+
+    /// Returns the equations; `None` without laws or with too few rows.
+    fn equations<'a>(
+        self,
+        data: &'a Data,
+        hypothesis: &'a Hypothesis,
+        (nominal, free): (Nominal, [bool; 4]),
+        runs: Vec<(Segment, Motion)>,
+        entries: Vec<(Candidate, Vec<f64>)>,
+    ) -> Option<WeakForm<'a>> {
+        let held = terms(&nominal.coefficients());
+        let count = free.iter().filter(|free| **free).count();
+        let (rows, width) = (self.torque.len(), self.counts.iter().sum::<usize>());
+        if width == 0 || rows < ROWS * count.max(1) {
+            return None;
+        }
+        let both = |row: &[f64; 4]| -> Vec<(f64, (bool, f64))> {
+            row.iter().copied().zip(free.into_iter().zip(held)).collect()
+        };
+        let oscillator: Vec<f64> = self
+            .oscillator
+            .iter()
+            .flat_map(|row| both(row).into_iter().filter(|(_, (free, _))| *free).map(|(term, _)| term))
+            .collect();
+        let oscillator = DMatrix::from_row_slice(rows, count, &oscillator);
+        let left = self.oscillator.iter().zip(&self.torque).map(|(row, torque)| {
+            let held = both(row).into_iter().filter(|(_, (free, _))| !*free);
+            torque - held.map(|(term, (_, value))| term * value).sum::<f64>()
+        });
+        let torque = DMatrix::from_iterator(rows, 1, left);
+        // The laws act on the side of the torque.
+        let laws: Vec<f64> = self.laws.iter().flatten().map(|own| -own).collect();
+        let laws = DMatrix::from_row_slice(rows, width, &laws);
+        let products = oscillator.tr_mul(&oscillator);
+        let without = |columns: &DMatrix<f64>| Some(columns - &oscillator * solve(&products, &oscillator.tr_mul(columns))?);
+        let (columns, residual) = (without(&laws)?, without(&torque)?);
+        let dictionary = Dictionary::of_columns(entries, &self.counts, &laws, columns, &residual);
+        Some(WeakForm { data, hypothesis, nominal, free, runs, oscillator, torque, laws, dictionary })
+    }
+}
+
+/// Run of samples with its smoothed motion.
 struct Seen<'s> {
-    segment: &'s Segment,
-    velocity: Vec<f64>,
+    data: &'s Data,
+    run: &'s Segment,
+    motion: &'s Motion,
+    nominal: &'s Nominal,
+    rest_is_free: bool,
     /// Torque of the input.
     input: Vec<f64>,
     command: Option<&'s Input>,
 }
 
 impl<'s> Seen<'s> {
-    fn of(data: &'s Data, segment: &'s Segment, gain: f64) -> Self {
-        let command = data.inputs.get(segment.record).and_then(Option::as_ref);
+    fn of(
+        data: &'s Data,
+        (run, motion): &'s (Segment, Motion),
+        nominal: &'s Nominal,
+        rest_is_free: bool,
+    ) -> Self {
+        let command = data.inputs.get(run.record).and_then(Option::as_ref);
+        let gain = nominal.input_gain();
         // Without an input there is no torque.
-        let input = segment.times.iter().map(|time| command.map_or(0.0, |input| gain * input.at(*time)));
-        Self { segment, velocity: slopes(&segment.times, &segment.values), input: input.collect(), command }
+        let input = run.times.iter().map(|time| command.map_or(0.0, |input| gain * input.at(*time)));
+        Self { data, run, motion, nominal, rest_is_free, input: input.collect(), command }
     }
 
-    /// Returns the torques of an effect at the samples, one series for each of the values.
-    fn columns(
-        &self,
-        law: Candidate,
-        values: &[Vec<f64>],
-        facts: &Scales,
-        nominal: &Coefficients<f64>,
-    ) -> Vec<Vec<f64>> {
-        let along = Along {
-            times: &self.segment.times,
-            position: &self.segment.values,
-            velocity: &self.velocity,
-            observed: &self.segment.values,
-            rate: &self.velocity,
+    /// Returns the torques of an effect at the samples, one series for each column.
+    fn columns(&self, law: Candidate, shape: &[f64]) -> Vec<Vec<f64>> {
+        self.along(&|along| law.columns(shape, along))
+    }
+
+    /// Returns the torque of an effect with some values; `None` for an effect of the measurement chain.
+    fn torque(&self, law: Candidate, values: &[f64]) -> Option<Vec<f64>> {
+        let effect = law.system()?;
+        Some(self.along(&|along| along.response_to(effect, values)))
+    }
+
+    fn along<T>(&self, read: &dyn Fn(&Along<'_>) -> T) -> T {
+        let coefficients = self.nominal.coefficients();
+        let facts: &Scales = &self.data.facts;
+        read(&Along {
+            times: &self.run.times,
+            position: &self.motion.position,
+            velocity: &self.motion.velocity,
+            observed: &self.motion.position,
+            rate: &self.motion.velocity,
             input: &self.input,
             command: self.command,
-            first: self.segment.first,
+            first: self.run.first,
             facts,
-            nominal,
+            nominal: &coefficients,
             respond: &|torque: &[f64]| torque.to_vec(),
-        };
-        law.system()
-            .map_or_else(Vec::new, |effect| values.iter().map(|own| along.response_to(effect, own)).collect())
+        })
     }
 }
-
-/// Returns the slopes at the samples, from those before and after. The slope at an end is that of its
-/// neighbor.
-fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
-    let inner = times.iter().zip(times.iter().skip(2)).zip(values.iter().zip(values.iter().skip(2)));
-    let inner: Vec<f64> = inner.map(|((from, to), (low, high))| (high - low) / (to - from)).collect();
-    let ends = [inner.first().copied(), inner.last().copied()];
-    // Fewer than three samples determine no slope.
-    let [first, last] = ends.map(|end| end.unwrap_or(0.0));
-    std::iter::once(first).chain(inner).chain([last]).take(times.len()).collect()
-}
-
 /// Weights of the samples in the integrals of a function times φ, φ̇ and φ̈, with φ = (1 − s²)ⁿ for |s| < 1.
 struct Bump {
     first: usize,
@@ -298,9 +446,11 @@ impl Bump {
     }
 }
 
-/// Returns bumps of a length over a segment, [`OVERLAP`] of which begin within one length.
-fn bumps(times: &[f64], length: f64) -> Vec<Bump> {
+/// Returns bumps over a segment, [`OVERLAP`] of which begin within the length of one.
+fn bumps(times: &[f64], period: f64) -> Vec<Bump> {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };
+    let interval = (last - first) / (times.len().max(2) - 1) as f64;
+    let length = (PERIODS * period).max(ENOUGH * interval);
     let count = ((last - first - length) / length * OVERLAP).floor();
     if count < 0.0 {
         return Vec::new();
@@ -311,7 +461,7 @@ fn bumps(times: &[f64], length: f64) -> Vec<Bump> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bump, slopes};
+    use super::Bump;
 
     /// ∫(1 − s²)⁴ ds = 256/315. Integrated by parts, φ̈ gives the second derivative of a parabola, φ̇ minus
     /// the slope of a line.
@@ -328,13 +478,5 @@ mod tests {
         near(slope, -3.0 * area);
         let [.., bend] = bump.integrals(&of(|t| 3.0 * t * t));
         near(bend, 6.0 * area);
-    }
-
-    #[test]
-    fn slopes_of_a_line_are_its_slope() {
-        for slope in slopes(&[0.0, 0.1, 0.3, 0.35], &[1.0, 1.2, 1.6, 1.7]) {
-            assert!((slope - 2.0).abs() < 1e-12, "{slope}");
-        }
-        assert_eq!(slopes(&[0.0, 1.0], &[0.0, 1.0]), [0.0, 0.0]);
     }
 }

@@ -11,13 +11,19 @@ use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::noise::floor;
 use crate::search::null;
+use crate::search::weak_form::Proposed;
 use dynamics::{Hold, Input};
+
+/// Largest number of laws in a set that the weak form proposes.
+const LARGEST: usize = 4;
 
 /// Recalibrated simulator, and the effects that it may lack.
 pub(crate) struct Question {
     pub(crate) data: Data,
     pub(crate) base: Baseline,
     pub(crate) candidates: Vec<Candidate>,
+    /// Sets that the weak form proposes on all samples.
+    pub(crate) proposed: Proposed,
     /// Number of input samples per knot of the input, on the coarse samples.
     knots: usize,
     /// Data with fewer samples and fewer knots of the input. `coarse_base` is the recalibrated simulator on
@@ -69,7 +75,9 @@ impl Question {
         // On fewer samples a gain is smaller by this factor; the search must not stop for that reason.
         let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
         let enough = 0.5 * threshold / finer;
-        Ok(Self { data, base, candidates, knots, coarse, coarse_base, enough })
+        let largest = LARGEST.min(settings.most_effects);
+        let proposed = Proposed::of(&data, &base.calibrated, &candidates, largest);
+        Ok(Self { data, base, candidates, proposed, knots, coarse, coarse_base, enough })
     }
 
     /// Returns the same question with more knots of the input, as many as a set needs that was found with

@@ -42,7 +42,7 @@ pub(crate) struct Refined {
 impl Refined {
     pub(crate) fn of(question: Question, searched: Searched) -> Result<Self, DiagnosisError> {
         let hold = question.hold();
-        let Question { data, base: segments_base, candidates, enough, .. } = question;
+        let Question { data, base: segments_base, candidates, proposed, enough, .. } = question;
         let Searched { interval: coarse, mut found, breadth } = searched;
         let closest = found.ranked(found.autocorrelation_time());
         let closest = closest.first().map_or(&coarse.calibrated, |best| *best);
@@ -60,6 +60,7 @@ impl Refined {
                 data: &coarse.data,
                 calibrated: &coarse.calibrated,
                 candidates: &others,
+                proposed: &proposed,
                 breadth: &breadth,
                 threshold: enough,
             };

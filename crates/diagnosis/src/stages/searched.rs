@@ -60,11 +60,12 @@ impl Searched {
             beam: 3,
             additions: 4,
         };
-        let Question { candidates, coarse, coarse_base, enough, .. } = question;
+        let Question { candidates, proposed, coarse, coarse_base, enough, .. } = question;
         let asked = Asked {
             data: coarse,
             calibrated: coarse_base,
             candidates,
+            proposed,
             breadth: &breadth,
             threshold: *enough,
         };

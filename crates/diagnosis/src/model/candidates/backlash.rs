@@ -7,6 +7,9 @@ use dynamics::{Effect, Nominal, SystemEffect};
 /// Initial half widths, relative to the amplitude.
 const PLAY: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
 
+/// Half widths of a large play, relative to the amplitude.
+const WIDE: [f64; 12] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.41, 0.5, 0.6, 0.72];
+
 /// Play around the rest position: a half width, within the swing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Backlash;
@@ -34,6 +37,14 @@ impl CandidateLaw for Backlash {
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
         grid(facts.amplitude, &PLAY, |half_width| vec![half_width])
+    }
+
+    fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        grid(facts.amplitude, &WIDE, |half_width| vec![half_width])
+    }
+
+    fn is_its_own_shape(&self) -> bool {
+        true
     }
 
     /// The shape is the parameter itself; the coefficient of its secant corrects it within limits.

@@ -7,6 +7,10 @@ use dynamics::{Effect, SystemEffect};
 /// Initial positions: distances from either end of the swing, relative to its span.
 const STOPS: [f64; 5] = [0.004, 0.015, 0.05, 0.12, 0.25];
 
+/// Positions of a stop that is met on every swing.
+const FAR_STOPS: [f64; 14] =
+    [0.003, 0.01, 0.02, 0.035, 0.055, 0.08, 0.11, 0.145, 0.185, 0.23, 0.28, 0.34, 0.4, 0.46];
+
 /// Elastic stop at one end of the swing: its position, its stiffness and its dissipation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EndStop;
@@ -40,6 +44,13 @@ impl CandidateLaw for EndStop {
         let span = facts.highest - facts.lowest;
         let upper = STOPS.iter().map(|part| facts.highest - part * span);
         let lower = STOPS.iter().map(|part| facts.lowest + part * span);
+        upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
+    }
+
+    fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        let span = facts.highest - facts.lowest;
+        let upper = FAR_STOPS.iter().map(|part| facts.highest - part * span);
+        let lower = FAR_STOPS.iter().map(|part| facts.lowest + part * span);
         upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
     }
 

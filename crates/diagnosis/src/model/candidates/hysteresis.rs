@@ -9,6 +9,9 @@ use dynamics::{Effect, Moment, SystemEffect, Values};
 /// Initial displacements, relative to the amplitude.
 const BENDING: [f64; 4] = [0.005, 0.02, 0.06, 0.2];
 
+/// Displacements at which a large hysteresis is looked for.
+const DENSE_BENDING: [f64; 7] = [0.005, 0.015, 0.04, 0.08, 0.14, 0.2, 0.28];
+
 /// Maximum displacement over the largest deflection. A contact that bends further hardly slides in most of a
 /// record: it acts as a spring and a loss that grow with the amplitude, as other laws do.
 const MOST_BENT: f64 = 0.3;
@@ -62,6 +65,10 @@ impl CandidateLaw for Hysteresis {
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
         grid(facts.amplitude, &BENDING, |displacement| vec![1.0, displacement])
+    }
+
+    fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        grid(facts.amplitude, &DENSE_BENDING, |displacement| vec![1.0, displacement])
     }
 
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {

@@ -46,6 +46,10 @@ impl CandidateLaw for InputDelay {
         vec![(along.respond)(&shifted.collect::<Vec<f64>>())]
     }
 
+    fn is_its_own_shape(&self) -> bool {
+        true
+    }
+
     /// The shape is the parameter itself; the coefficient of its secant corrects it within limits.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
         secant(shape, coefficients)

@@ -163,6 +163,18 @@ pub(crate) trait CandidateLaw: Sync {
         vec![vec![1.0]]
     }
 
+    /// Returns the shapes at which a large effect is looked for along the measured motion, densely enough that a
+    /// fit converges from the closest. Default: [`Self::shapes`].
+    fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        self.shapes(facts)
+    }
+
+    /// Returns `true` if the effect's one parameter is its shape, so that its torque is not linear in it.
+    /// Default: `false`.
+    fn is_its_own_shape(&self) -> bool {
+        false
+    }
+
     /// Returns the shapes given the residual of a fit. Default: [`Self::shapes`].
     fn shapes_for(&self, facts: &Scales, _residual: &dyn Lines) -> Vec<Vec<f64>> {
         self.shapes(facts)

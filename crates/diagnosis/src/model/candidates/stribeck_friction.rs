@@ -8,6 +8,9 @@ use dynamics::{Effect, SystemEffect};
 /// Initial Stribeck velocities, relative to the largest speed.
 const SPEEDS: [f64; 3] = [0.02, 0.06, 0.2];
 
+/// Speeds at which a large excess is looked for.
+const DENSE_SPEEDS: [f64; 6] = [0.03, 0.06, 0.1, 0.17, 0.27, 0.4];
+
 /// Friction that falls with speed: Coulomb's torque, the excess of the static torque over it (so that the
 /// static torque is at least Coulomb's), and the velocity over which the excess is lost.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +65,10 @@ impl CandidateLaw for StribeckFriction {
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
         grid(facts.speed, &SPEEDS, |velocity| vec![1.0, 1.0, velocity])
+    }
+
+    fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        grid(facts.speed, &DENSE_SPEEDS, |velocity| vec![1.0, 1.0, velocity])
     }
 
     /// The columns are those of Coulomb's torque and of the excess. If the nominal simulator has Coulomb

@@ -1,0 +1,48 @@
+//! Short shooting intervals: pieces of segments, on which even a fit that begins far off finds its way.
+
+use crate::data::segments::{Data, Segment};
+use std::f64::consts::TAU;
+
+/// Number of periods of the shortest pieces, and the fewest samples in one.
+const PERIODS: f64 = 1.5;
+const FEWEST: usize = 16;
+
+/// Factor from one length of the pieces to the next.
+const RATIO: usize = 4;
+
+impl Data {
+    /// Returns how many times the shortest pieces of the longest segment are joined by [`RATIO`] until they are
+    /// the segment.
+    pub(crate) fn splits(&self) -> u32 {
+        let most = self.segments.iter().map(|segment| self.pieces(segment)).max().unwrap_or(1);
+        most.ilog(RATIO) + u32::from(most > RATIO.pow(most.ilog(RATIO)))
+    }
+
+    /// Splits every segment into pieces, each with its own start state: into the shortest ones, joined `times`
+    /// times by four. Also returns the sample of its segment at which each piece begins, by segment.
+    pub(crate) fn split(&self, times: u32) -> (Self, Vec<Vec<usize>>) {
+        let mut segments = Vec::new();
+        let mut begins = Vec::with_capacity(self.segments.len());
+        for segment in &self.segments {
+            let count = (self.pieces(segment) / RATIO.pow(times)).max(1);
+            let begin: Vec<usize> = (0..count).map(|piece| piece * segment.times.len() / count).collect();
+            let ends = begin.iter().skip(1).copied().chain([segment.times.len()]);
+            for (from, to) in begin.iter().copied().zip(ends) {
+                let pick = |list: &[f64]| list.get(from..to).map(<[f64]>::to_vec).unwrap_or_default();
+                let (times, values) = (pick(&segment.times), pick(&segment.values));
+                let first = segment.first && from == 0;
+                segments.push(Segment { first, times, values, parts: vec![0], ..segment.clone() });
+            }
+            begins.push(begin);
+        }
+        (Self { segments, ..self.clone() }, begins)
+    }
+
+    /// Returns the number of the shortest pieces of a segment: a power of [`RATIO`], so that longer pieces begin
+    /// where shorter ones do.
+    fn pieces(&self, segment: &Segment) -> usize {
+        let periods = segment.span() * self.facts.frequency / TAU;
+        let most = ((periods / PERIODS) as usize).min(segment.times.len() / FEWEST).max(1);
+        RATIO.pow(most.ilog(RATIO))
+    }
+}
