@@ -13,6 +13,7 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::{Dictionary, Gain};
+use crate::noise::floor::floor;
 use crate::search::archive::{Archive, is_another};
 use crate::search::asked::Asked;
 use crate::search::from_afar::from_afar;
@@ -28,6 +29,13 @@ use std::collections::BTreeSet;
 /// largest number of such fits.
 const NEAR: f64 = 1.5;
 const POLISHED: usize = 6;
+
+/// Error of a set, relative to the noise, above which the search goes on beyond the best set of each size.
+const LEFT: f64 = 1.3;
+
+/// Number of sets of each size that are then expanded, and of rounds.
+const DEPTH: usize = 3;
+const MOST_ROUNDS: usize = 16;
 
 /// Distance in score from the best beyond which a set is not expanded.
 const FAR_BEHIND: f64 = 30.0;
@@ -181,30 +189,44 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
     explored
 }
 
+/// Returns `true` if a set leaves so much more than noise that something must be missing from it.
+fn leaves_more(data: &Data, set: &Fit) -> bool {
+    (set.squares / set.freedom()).sqrt() > LEFT * floor(data, &set.residuals).value
+}
+
+/// Returns the sets to expand next: the best one of each size. If all of these are expanded already, the next
+/// best ones follow, up to `depth` of each size.
+fn bases(ranked: &[&Fit], expanded: &mut BTreeSet<Vec<usize>>, depth: usize) -> Vec<Fit> {
+    let size = |fit: &Fit| fit.hypothesis.counted().count();
+    let largest = ranked.iter().map(|fit| size(fit)).max().unwrap_or(0);
+    for place in 0..depth {
+        let of_size = |wanted: usize| ranked.iter().filter(move |fit| size(fit) == wanted).nth(place);
+        let chosen = (1..=largest).filter_map(of_size).filter(|fit| expanded.insert(fit.hypothesis.ranks()));
+        let chosen: Vec<Fit> = chosen.map(|fit| (*fit).clone()).collect();
+        if !chosen.is_empty() {
+            return chosen;
+        }
+    }
+    Vec::new()
+}
+
 /// Continues a search from the best sets that were not expanded yet.
 pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
     let &Asked { data, breadth, threshold, .. } = asked;
     let Explored { archive: pool, tried, expanded, unmasked } = explored;
-    for _ in 0..2 * breadth.most_effects {
+    for _ in 0..MOST_ROUNDS {
         unmask(data, pool, unmasked);
         let time = pool.autocorrelation_time();
         let before = pool.highest(time);
         let ranked = pool.ranked(time);
-        let effects = || ranked.iter().filter(|fit| !fit.hypothesis.candidates.is_empty());
-        let near = effects().take(breadth.beam).filter(|fit| before - score(fit, time) < FAR_BEHIND);
-        // A flexible effect may stand in for a plain law. What is missing beside that law would then not be
-        // found, so the best plain set is always expanded too.
-        let plain = effects().find(|fit| fit.hypothesis.is_plain());
-        let bases: Vec<Fit> = near
-            .chain(plain)
-            .filter(|fit| expanded.insert(fit.hypothesis.ranks()))
-            .map(|fit| (*fit).clone())
-            .collect();
+        let goes_on = ranked.first().is_some_and(|best| leaves_more(data, best));
+        let bases = bases(&ranked, expanded, if goes_on { DEPTH } else { 1 });
         if bases.is_empty() {
             break;
         }
+        let best = ranked.first().map(|best| best.hypothesis.ranks());
         let moves: Vec<(Vec<Proposal>, Vec<Fit>)> =
-            bases.par_iter().enumerate().map(|(place, base)| moves(asked, base, place == 0)).collect();
+            bases.par_iter().map(|base| moves(asked, base, best.as_ref() == Some(&base.hypothesis.ranks()))).collect();
         let mut proposals: Vec<Proposal> = Vec::new();
         for (own, dropped) in moves {
             // A set that a better one has proposed already begins from there.
@@ -218,7 +240,9 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         settle(data, pool, tried, proposals);
         let time = pool.autocorrelation_time();
         if pool.highest(time) - before < threshold
-            && pool.ranked(time).first().is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()))
+            && pool.ranked(time).first().is_some_and(|fit| {
+                expanded.contains(&fit.hypothesis.ranks()) && !leaves_more(data, fit)
+            })
         {
             break;
         }

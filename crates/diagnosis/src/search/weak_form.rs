@@ -211,13 +211,11 @@ impl<'a> WeakForm<'a> {
         ranks
     }
 
-    /// Returns `true` if an entry's law is neither a member of a set nor the special case of one, or the other
-    /// way round.
+    /// Returns `true` if a set has no law of an entry's class: two of them hardly differ along a smoothed record.
     fn fits(&self, set: &[usize], entry: usize) -> bool {
         let Some(own) = self.candidate(entry) else { return false };
-        set.iter().filter_map(|entry| self.candidate(*entry)).all(|member| {
-            member != own && member.generalizes() != Some(own) && own.generalizes() != Some(member)
-        })
+        let mut members = set.iter().filter_map(|entry| self.candidate(*entry));
+        members.all(|member| member.evidence_class() != own.evidence_class())
     }
 
     /// Returns the values at which the fit of a set begins; `None` if they are those of no oscillator.
