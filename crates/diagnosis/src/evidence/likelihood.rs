@@ -1,14 +1,15 @@
 //! Likelihood of residuals, with allowance for a discrepancy that no set of effects explains.
 //!
-//! This is Whittle's likelihood by bands about the swing's half harmonics: the power P that a set leaves in a
-//! band of w independent squares adds −w/2·(ln S + P/S) to the log likelihood, where S is the variance there:
-//! the sensor's variance σ² plus that of a discrepancy of unknown size. S is σ² if P is below σ², and P
-//! otherwise.
+//! This is Whittle's likelihood by segments and by bands about the swing's half harmonics: the power P that a set
+//! leaves in a band of w independent squares adds −w/2·(ln S + P/S) to the log likelihood, where S is the
+//! variance there: the sensor's variance σ² plus that of a discrepancy of unknown size. S is σ² if P is below
+//! σ², and P otherwise.
 //!
 //! So a law has its full weight wherever only the sensor's noise is left. Where something is left that no law
-//! explains, only the ratio of the powers that two sets leave counts, and a left-over that persists from
-//! swing to swing is worth a few dozen numbers, however many samples show it. A band's w is less than its
-//! number of bins if few segments hold most of the power.
+//! explains, only the ratio of the powers that two sets leave counts: a set that is far off in one segment, where
+//! a law meets a speed that it was not fitted to, loses there what it loses, and gains in all others. A left-over
+//! that persists from swing to swing is worth a few dozen numbers, however many segments show it: of n segments,
+//! a band in which the closest set leaves S has the share σ²/S + (1 − σ²/S)/n of its squares.
 //!
 //! # Reference
 //! Ahmed, Natarajan, Rao, IEEE Transactions on Computers C-23 (1974) 90 (the cosine transform). Whittle,
@@ -56,8 +57,8 @@ struct Bins {
 #[derive(Debug, Clone)]
 pub(crate) struct Likelihood {
     bins: Vec<Bins>,
-    /// Number of independent squares by band.
-    worth: Vec<f64>,
+    /// Number of independent squares by segment and band.
+    worth: Vec<[f64; BANDS]>,
     /// Variance of the sensor's noise.
     noise: f64,
 }
@@ -144,7 +145,7 @@ impl Bins {
 
 impl Likelihood {
     /// Creates the likelihood of residuals by unjoined segment. `closest` is the residual of the closest set:
-    /// it determines the number of independent squares of a band. `noise` is the standard deviation of the
+    /// it determines how many independent squares a band has. `noise` is the standard deviation of the
     /// sensor's noise.
     pub(crate) fn of(data: &Data, closest: &[DVector<f64>], noise: f64, view: View) -> Self {
         let mut bins = Vec::new();
@@ -158,7 +159,18 @@ impl Likelihood {
         }
         let mut own = Self { bins, worth: Vec::new(), noise: noise * noise };
         let powers = own.powers(closest);
-        own.worth = (0..BANDS).map(|band| worth(&own.bins, &powers, band, view.worth())).collect();
+        let share = |mean: f64| {
+            let of_noise = own.noise / mean.max(own.noise).max(f64::MIN_POSITIVE);
+            of_noise + (1.0 - of_noise) / powers.len().max(1) as f64
+        };
+        let worth = |(bins, powers): (&Bins, &[f64; BANDS])| {
+            let mut worth = bins.counts;
+            for (worth, power) in worth.iter_mut().zip(powers).filter(|(worth, _)| **worth > 0.0) {
+                *worth *= view.worth() * share(power / *worth);
+            }
+            worth
+        };
+        own.worth = own.bins.iter().zip(&powers).map(worth).collect();
         own
     }
 
@@ -175,16 +187,6 @@ impl Likelihood {
 
     /// Returns the log likelihood of the `drawn` segments, from the [`Self::powers`] of all.
     pub(crate) fn log_of(&self, by_segment: &[[f64; BANDS]], drawn: &[usize]) -> f64 {
-        let mut powers = [0.0; BANDS];
-        let mut counts = [0.0; BANDS];
-        for (own, bins) in drawn.iter().filter_map(|&at| by_segment.get(at).zip(self.bins.get(at))) {
-            for ((power, count), (own, number)) in
-                powers.iter_mut().zip(&mut counts).zip(own.iter().zip(bins.counts))
-            {
-                *power += own;
-                *count += number;
-            }
-        }
         let of = |((power, count), worth): ((&f64, &f64), &f64)| {
             if *count == 0.0 {
                 return 0.0;
@@ -193,33 +195,17 @@ impl Likelihood {
             let variance = mean.max(self.noise).max(f64::MIN_POSITIVE);
             -0.5 * worth * (variance.ln() + mean / variance)
         };
-        powers.iter().zip(&counts).zip(&self.worth).map(of).sum()
+        let segment = |&at: &usize| {
+            let (powers, bins, worth) = (by_segment.get(at)?, self.bins.get(at)?, self.worth.get(at)?);
+            Some(powers.iter().zip(&bins.counts).zip(worth).map(of).sum::<f64>())
+        };
+        drawn.iter().filter_map(segment).sum()
     }
 
     /// Returns the number of independent squares in the record, at least 2.
     pub(crate) fn worth(&self) -> f64 {
-        self.worth.iter().sum::<f64>().max(2.0)
+        self.worth.iter().flatten().sum::<f64>().max(2.0)
     }
-}
-
-/// Returns the number of independent squares in a band of all segments: fewer than its bins if few segments
-/// hold most of the power, beyond the scatter of stationary noise. A bin has `each` of them. `closest` is the
-/// power that the closest set leaves, by segment and band.
-fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize, each: f64) -> f64 {
-    let (mut all, mut square, mut count) = (0.0, 0.0, 0.0);
-    for (bins, powers) in bins.iter().zip(closest) {
-        // A band that no bin reaches has no power.
-        let own = bins.counts.get(band).copied().unwrap_or_default();
-        if own > 0.0 {
-            // A band that no bin reaches has no power.
-            let power = powers.get(band).copied().unwrap_or_default();
-            all += power;
-            square += power * power / own / (1.0 + 2.0 / (own * each));
-            count += own;
-        }
-    }
-    let share = if square > 0.0 { (all * all / (count * square)).min(1.0) } else { 1.0 };
-    each * count * share
 }
 
 #[cfg(test)]
