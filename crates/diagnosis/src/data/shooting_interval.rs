@@ -22,7 +22,7 @@ const RECALIBRATED: f64 = 2.0;
 
 /// Factor by which the error of a set may grow on a longer shooting interval if the set is to be judged
 /// there.
-const JUDGED: f64 = 1.1;
+const JUDGED: f64 = 1.03;
 
 /// Largest error relative to the motion at which a linearization still holds, as a phase error in radians.
 const LINEAR: f64 = 0.05;
