@@ -6,7 +6,7 @@ import numpy
 
 from motion import (
     COULOMB, CONTACT, CONTACT_LOSS, CUBIC, DAHL, DRAG, EXCESS, FORCING, FREQUENCY, KINDS, LEAN, LIMIT, PHASE, PLAY, PRELOAD,
-    PRESLIDING, QUADRATIC, SECOND, SECOND_DAMPING, SECOND_SQUARE, SIDE, SLIDING, STIFFENING, STOP, STRIBECK, THICKENING, UNLISTED,
+    PRESLIDING, QUADRATIC, RETURN, SECOND, SECOND_DAMPING, SECOND_SQUARE, SHARPNESS, SIDE, SLIDING, STIFFENING, STOP, STRIBECK, THICKENING, UNLISTED,
     WEIGHT,
 )
 
@@ -29,6 +29,9 @@ OFTEN = {
     "flexible_coupling": 1.5, "periodic_forcing": 1.2, "constant_torque": 1.2, "input_delay": 2, "input_saturation": 2,
     "sensor_nonlinearity": 1, "sensor_drift": 1, "sensor_saturation": 0.5, "outliers": 0.5, "timestamp_jitter": 0.5,
 }
+# How often each leads a hard rig.
+HARD = {"backlash": 3, "end_stop": 3, "hysteresis": 3, "damping_drift": 1, "coulomb_friction": 1, "stribeck_friction": 1, "gravity": 1,
+        "quadratic_drag": 1, "flexible_coupling": 1}
 CHAIN = {"sensor_nonlinearity", "sensor_drift", "sensor_saturation", "outliers", "timestamp_jitter", "clock_drift"}
 
 
@@ -48,6 +51,7 @@ class Effect:
         self.stiff = math.exp(draws.uniform(math.log(5), math.log(80)))
         self.loss = draws.uniform(0, 0.5)
         self.phase = draws.uniform(-math.pi, math.pi)
+        self.form = (1.0, 0.0)
         self.frequency = rig.omega * (draws.uniform(0.15, 0.75) if draws.random() < 0.5 else draws.uniform(1.4, 3.4))
         self.second = rig.omega * draws.uniform(1.6, 5.0)
         self.second_ratio = math.exp(draws.uniform(math.log(0.003), math.log(0.04)))
@@ -65,6 +69,24 @@ class Effect:
         if self.hanging:
             self.angle = draws.uniform(-0.05, 0.05)
 
+    def harden(self, draws):
+        """A form and a strength as machines have them, far from those that a linearization sees; returns the strength."""
+        match self.id:
+            case "backlash":
+                return draws.uniform(0.25, 0.5)
+            case "end_stop":
+                self.stiff, self.loss, self.power = draws.uniform(20, 40), draws.uniform(0.3, 3.0), 1.0
+                return draws.uniform(0.15, 0.5) * (1 + self.rig.reach)
+            case "hysteresis":
+                self.share = draws.uniform(0.2, 0.66)
+                self.form = (draws.uniform(0.5, 0.95), float(draws.integers(1, 3)))
+                return math.exp(draws.uniform(math.log(0.02), math.log(0.3)))
+            case "damping_drift":
+                self.sign = -1.0
+                return 30.0 * draws.uniform(0.85, 0.95)
+            case _:
+                return math.exp(draws.uniform(math.log(0.02), math.log(0.25)))
+
     def apply(self, P, x):
         rig = self.rig
         unit, swing, speed = rig.square * rig.amplitude, rig.amplitude, rig.amplitude * rig.omega
@@ -75,6 +97,7 @@ class Effect:
                 P[SLIDING], P[EXCESS], P[STRIBECK] = x * unit, x * unit * (self.ratio - 1), self.share * speed
             case "hysteresis":
                 P[DAHL], P[PRESLIDING] = x * unit, 0.5 * self.share * swing
+                P[RETURN], P[SHARPNESS] = self.form
             case "cubic_stiffness":
                 P[CUBIC] = self.sign * x * unit / swing**3
             case "asymmetric_stiffness":

@@ -85,7 +85,7 @@ def main():
             print(f"    {feature:12s} {value:6.2f} ± {error:.2f}")
     probabilities = left * learned["DOUBTED"] + (1 - left) * learned["CLEAN"]
     print("calibration error of classes, as stated and as learned:")
-    several = numpy.array([kind in ("composite", "rough") for *_, kind in rows])
+    several = numpy.array([kind in ("composite", "rough", "hard") for *_, kind in rows])
     for label, chosen in (("several effects", several), ("all", numpy.ones(len(rows), bool))):
         of = lambda values: score.calibration(zip(values[chosen], outcomes[chosen]))
         print(f"    {label:16s} {of(stated)}; {of(probabilities)}")

@@ -15,7 +15,7 @@ from numba import njit
 # Places in the vector of parameters, per unit of inertia.
 (SQUARE, DAMPING, REST, COULOMB, SLIDING, EXCESS, STRIBECK, DAHL, PRESLIDING, DRAG, CUBIC, QUADRATIC, WEIGHT, LEAN, PRELOAD,
  PLAY, STOP, CONTACT, CONTACT_LOSS, SIDE, STIFFENING, THICKENING, FORCING, FREQUENCY, PHASE, SECOND, SECOND_SQUARE, SECOND_DAMPING,
- GAIN, LIMIT) = range(30)
+ GAIN, LIMIT, RETURN, SHARPNESS) = range(32)
 UNLISTED = (32, 48)
 LENGTH = 64
 # Kinds of laws outside the vocabulary: at UNLISTED kind, size, then 14 numbers of shape.
@@ -92,7 +92,12 @@ def smooth(P, y, t, u, out):
         out[i] = 0.0
     if P[DAHL] != 0.0:
         a -= P[DAHL] * y[2]
-        out[2] = (v - abs(v) * y[2]) / P[PRESLIDING]
+        if P[SHARPNESS] > 0.0:
+            # Bouc and Wen's law: a part of the loss acts on the way back as well, and an exponent sharpens the knee.
+            loss = abs(y[2]) ** P[SHARPNESS] * (1.0 - P[RETURN] + P[RETURN] * numpy.sign(v * y[2]))
+            out[2] = v * (1.0 - loss) / P[PRESLIDING]
+        else:
+            out[2] = (v - abs(v) * y[2]) / P[PRESLIDING]
     if P[SECOND] != 0.0:
         pull = P[SECOND_SQUARE] * (y[3] - y[0]) + P[SECOND_DAMPING] * (y[4] - v)
         a += P[SECOND] * pull

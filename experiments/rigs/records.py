@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy
 
 import motion
-from laws import CHAIN, CLASSES, FIRST, OF_CLASS, OFTEN, SECOND_LIST, Effect, Unlisted
+from laws import CHAIN, CLASSES, FIRST, HARD, OF_CLASS, OFTEN, SECOND_LIST, Effect, Unlisted
 from motion import COULOMB, DAMPING, GAIN, LENGTH, REST, SQUARE
 from sizes import Tangent, rms
 
@@ -196,7 +196,17 @@ class Case:
         if not motions.ok:
             raise ValueError("the nominal motion cannot be integrated")
         moved = rms(numpy.concatenate(motions.positions) - rig.rest)
-        if self.targets:
+        if kind == "hard":
+            # The leading effect is as large as a machine's; the noise follows from its size.
+            self.floor = 1.0
+            self.strengths = [self.laws[0].harden(draws)] + [1e-4] * (len(self.laws) - 1)
+            run = self.move()
+            if not run.ok or not self.sensible(run):
+                raise ValueError("the leading effect leaves no motion")
+            self.floor = self.sizes(run)[0] / self.targets[0]
+            if not 3e-4 * moved < self.floor < 0.03 * moved:
+                raise ValueError("the noise would be out of range")
+        elif self.targets:
             share = log_uniform(draws, 0.01, 0.12)
             self.floor = moved * share / max(*self.targets, 12.0)
         else:
@@ -217,6 +227,11 @@ class Case:
                 targets = [log_uniform(draws, 6, 100)]
             case "pair":
                 targets = [log_uniform(draws, 6, 100) for _ in range(2)]
+            case "hard":
+                targets = [log_uniform(draws, 30, 150)]
+                targets += [log_uniform(draws, 30, 150) if draws.random() < 0.4 else log_uniform(draws, 4, 30)
+                            for _ in range(int(draws.integers(0, 4)))]
+                unlisted = [log_uniform(draws, 0.7, 2)] if draws.random() < 0.75 else []
             case "rough":
                 # As on machines: what no law explains is far above the noise, and the cause is larger still.
                 targets = [log_uniform(draws, 60, 300)]
@@ -230,7 +245,9 @@ class Case:
         weights = numpy.array([OFTEN[name] for name in allowed])
         for target in targets:
             weights = weights / weights.sum()
-            at = int(draws.choice(len(allowed), p=weights))
+            leading = numpy.array([HARD.get(name, 0.0) for name in allowed])
+            first = self.kind == "hard" and not self.laws
+            at = int(draws.choice(len(allowed), p=leading / leading.sum() if first else weights))
             # A record's stamps and outliers are no leading cause of a composite rig.
             while self.kind in ("composite", "rough") and not self.laws and allowed[at] in ("outliers", "timestamp_jitter"):
                 at = int(draws.choice(len(allowed), p=weights))
@@ -327,18 +344,21 @@ class Case:
 
     def solve(self):
         """Strengths by repeated proportion; raises where the sizes are out of reach."""
+        leading = self.strengths[:1]
         self.strengths = [min(0.3 * law.most, max(1e-4, 0.02 * target * self.floor / self.rig.amplitude * 10))
                           for law, target in zip(self.laws, self.targets)]
         for turn in range(14):
+            self.strengths[: len(leading)] = leading
             run = self.move()
             if not run.ok or not self.sensible(run):
                 self.strengths = [0.4 * x for x in self.strengths]
                 continue
             found = self.sizes(run)
             ratios = [target / max(size, 1e-9) for target, size in zip(self.targets, found)]
-            if all(0.87 < ratio < 1.15 for ratio in ratios):
+            others = ratios[len(leading) :]
+            if all(0.87 < ratio < 1.15 for ratio in others):
                 return run
-            if turn > 8 and all(0.6 < ratio < 1.67 for ratio in ratios):
+            if turn > 8 and all(0.6 < ratio < 1.67 for ratio in others):
                 return run
             limit = 6.0 if turn < 5 else 2.0
             self.strengths = [
@@ -414,7 +434,8 @@ def stamps_of(case, record, draws, count, velocity):
     rig = case.rig
     times = numpy.arange(count) * rig.step
     if case.clock == "jitter":
-        deviation = min(0.5 * case.floor / max(rms(velocity), 1e-300), 0.3 * rig.step)
+        # On a hard rig by up to a third of the interval.
+        deviation = 0.33 * rig.step if case.kind == "hard" else min(0.5 * case.floor / max(rms(velocity), 1e-300), 0.3 * rig.step)
         return numpy.sort(times + deviation * draws.standard_normal(count)), ["timestamp_jitter"]
     if case.clock == "bursts":
         interval = max(3 * rig.step, 0.03 * draws.uniform(0.3, 2))
@@ -556,6 +577,8 @@ def make(out, bank, seed, number, use_engine, kind=None):
                 "amplitude": rig.amplitude, "coordinate": "displacement" if rig.displacement else "angle", "driven": bool(rig.driven),
                 "hanging": any(getattr(law, "hanging", False) for law in case.laws)},
         "integrator": integrator,
+        "system": {"inertia": rig.inertia, "damping": rig.damping * rig.inertia, "stiffness": float(case.P[SQUARE]) * rig.inertia,
+                   "rest_angle": rig.rest},
         "made": f"experiments/rigs/records.py, seed {seed}, case {number}",
     }
     if kind == "unlisted":
@@ -573,7 +596,9 @@ def main():
     parser.add_argument("--cases", type=int, default=240)
     parser.add_argument("--first", type=int, default=0, help="number of the first case, to make them in parts")
     parser.add_argument("--seed", type=int, default=2)
-    parser.add_argument("--kind", choices=sorted({*KINDS, "rough"}), help="rigs of one kind only; `rough`: a cause far above the noise, and a law without a name that is as well")
+    parser.add_argument("--kind", choices=sorted({*KINDS, "rough", "hard"}),
+                        help="rigs of one kind only; `rough`: a cause far above the noise, and an unlisted law that is as well; `hard`: large play, "
+                        "stops and other forms of hysteresis, two large effects at once")
     parser.add_argument("--no-engine", action="store_true", help="leave MuJoCo out")
     arguments = parser.parse_args()
     for number in range(arguments.first, arguments.first + arguments.cases):

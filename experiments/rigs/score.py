@@ -122,7 +122,7 @@ def marginals(cases, listed):
 def table(cases):
     """Rows of name and value."""
     of = lambda *kinds: [case for case in cases if case.kind in kinds]
-    composite, apart = of("composite", "rough"), of("single", "pair")
+    composite, apart = of("composite", "rough", "hard"), of("single", "pair")
     lead = [case.classes.get(case.effects[0]["class"], 0.0) for case in composite]
     rows = [("cases; without an answer", f"{len(cases)}; {sum(not case.answered for case in cases)}")]
     rows.append(("composite: leading class at 0.9 or more", share(p >= 0.9 for p in lead)))

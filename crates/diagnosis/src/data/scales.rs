@@ -42,6 +42,8 @@ pub(crate) struct Scales {
     pub(crate) repeats: Option<Repeats>,
     /// Error of an integration step relative to the amplitude: a small part of the noise, within limits.
     pub(crate) tolerance: f64,
+    /// Standard deviation of the noise in the sensor's own unit; 0 while it is not known.
+    pub(crate) noise: f64,
 }
 
 /// Repetition of a driven motion.
@@ -106,7 +108,7 @@ impl Scales {
     /// in the same unit as `noise`.
     pub(crate) fn with_noise(self, noise: f64, span: f64) -> Self {
         let resolution = if self.resolution < noise { 0.0 } else { self.resolution };
-        Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), resolution, ..self }
+        Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), resolution, noise, ..self }
     }
 
     /// Tolerance while the noise is not yet known.

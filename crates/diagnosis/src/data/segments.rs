@@ -356,6 +356,7 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         repeats: records.iter().find(|record| record.input.is_some()).and_then(repeats),
         rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
         tolerance: Scales::UNKNOWN_NOISE,
+        noise: 0.0,
     }
 }
 

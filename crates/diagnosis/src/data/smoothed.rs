@@ -47,9 +47,15 @@ impl Step {
         }
         let [h2, h3, h4, h5] = [2, 3, 4, 5].map(|n| h.powi(n));
         let spread = Matrix3::new(
-            h5 / 20.0, h4 / 8.0, h3 / 6.0, //
-            h4 / 8.0, h3 / 3.0, h2 / 2.0, //
-            h3 / 6.0, h2 / 2.0, h,
+            h5 / 20.0,
+            h4 / 8.0,
+            h3 / 6.0, //
+            h4 / 8.0,
+            h3 / 3.0,
+            h2 / 2.0, //
+            h3 / 6.0,
+            h2 / 2.0,
+            h,
         );
         Self { transition, push: integral * Vector3::new(0.0, 1.0, 0.0), spread }
     }
@@ -111,12 +117,15 @@ impl Readings {
     fn smoothed(&self) -> Vec<Vector3<f64>> {
         let likelihood = |wanders: &f64| self.filtered(*wanders, |_| {});
         let likely = WANDERS.iter().map(|wanders| (likelihood(wanders), *wanders));
-        let (_, wanders) = likely.fold((f64::NEG_INFINITY, 1.0), |best, own| if own.0 > best.0 { own } else { best });
+        let (_, wanders) =
+            likely.fold((f64::NEG_INFINITY, 1.0), |best, own| if own.0 > best.0 { own } else { best });
         let mut estimates = Vec::with_capacity(self.values.len());
         self.filtered(wanders, |own| estimates.push(own));
         let mut states: Vec<Vector3<f64>> = Vec::with_capacity(estimates.len());
         let mut later: Option<(Estimate, Vector3<f64>)> = None;
-        for (own, step) in estimates.iter().rev().zip(std::iter::once(None).chain(self.steps.iter().rev().map(Some))) {
+        for (own, step) in
+            estimates.iter().rev().zip(std::iter::once(None).chain(self.steps.iter().rev().map(Some)))
+        {
             let state = match (later, step) {
                 (Some((next, smooth)), Some(step)) => {
                     let spread = next.before_spread.try_inverse();
@@ -142,7 +151,8 @@ pub(crate) fn smoothed(data: &Data, run: &Segment, oscillator: &Nominal, noise: 
     let stiffness = own.stiffness / own.inertia / (time * time);
     let damping = own.damping / own.inertia / time;
     let input = data.inputs.get(run.record).and_then(Option::as_ref);
-    let acceleration = |input: &Input, at: f64| own.input_gain * input.at(at) / (own.inertia * unit * time * time);
+    let acceleration =
+        |input: &Input, at: f64| own.input_gain * input.at(at) / (own.inertia * unit * time * time);
     // Without an input there is no torque.
     let input: Vec<f64> =
         run.times.iter().map(|at| input.map_or(0.0, |input| acceleration(input, *at))).collect();
@@ -179,5 +189,43 @@ pub(crate) fn smoothed(data: &Data, run: &Segment, oscillator: &Nominal, noise: 
         acceleration: states.iter().zip(&readings.input).map(pulled).collect(),
         position: states.iter().map(|state| rest + unit * state.x).collect(),
         velocity: states.iter().map(|state| unit * time * state.y).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::smoothed;
+    use crate::data::observations::Observations;
+    use crate::data::segments::cut;
+    use crate::fixtures::record;
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Nominal, Start, System};
+    use record::{Clock, ClockChoice};
+
+    /// A swing in a play of two fifths of its release. The oscillator that smooths it has no play.
+    #[test]
+    fn follows_a_play_that_the_oscillator_lacks() {
+        let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
+        let play = Active::new("backlash", &[0.24]).unwrap();
+        let system = System::new(nominal, vec![play]).unwrap();
+        let chain = Chain::new(Observed::Position, 1e-3, Vec::new()).unwrap();
+        let record = record(&system, 0.6, 1000, &chain, 1);
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let observed = Observations::new(&record, &clock);
+        let kept = vec![true; observed.len()];
+        let data = cut(std::slice::from_ref(&observed), &[kept], &(&nominal).into()).unwrap();
+        let run = data.joined(usize::MAX).segments.remove(0);
+        let softer = Nominal::new(1.0, 0.2, 250.0, 0.0).unwrap();
+        let motion = smoothed(&data, &run, &softer, 1e-3);
+        let truth = simulate(&system, Start::release(0.6), None, &run.times, &Tolerance::default()).unwrap();
+        let off = |found: &[f64], truth: &[f64]| {
+            let squares = found.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            (squares / found.len() as f64).sqrt()
+        };
+        assert!(off(&motion.position, &truth.position) < 1e-3);
+        let largest = truth.velocity.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+        let error = off(&motion.velocity, &truth.velocity) / largest;
+        assert!(error < 0.02, "{error}");
     }
 }

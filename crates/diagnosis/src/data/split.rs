@@ -46,3 +46,28 @@ impl Data {
         RATIO.pow(most.ilog(RATIO))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::evidence::score::calibrated_swing;
+
+    /// Longer pieces begin where shorter ones do, and the longest ones are the segments.
+    #[test]
+    fn pieces_hold_every_sample_and_are_nested() {
+        let (data, _) = calibrated_swing();
+        let data = data.joined(usize::MAX);
+        let splits = data.splits();
+        assert!(splits > 0);
+        let (short, mut begins) = data.split(0);
+        assert!(short.segments.len() > data.segments.len());
+        assert_eq!(short.samples(), data.samples());
+        assert_eq!(short.segments.iter().filter(|own| own.first).count(), 1);
+        for times in 1..=splits {
+            let (longer, next) = data.split(times);
+            assert_eq!(longer.samples(), data.samples());
+            assert!(next.iter().zip(&begins).all(|(new, old)| new.iter().all(|at| old.contains(at))));
+            begins = next;
+        }
+        assert_eq!(begins, vec![vec![0]; data.segments.len()]);
+    }
+}

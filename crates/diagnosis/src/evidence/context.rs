@@ -163,13 +163,16 @@ impl<'a> Context<'a> {
         let given = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
         let nominal = given.interleaved(Moving::Starts)?;
         let calibrated = own(&self.base.calibrated, &short.calibrated);
-        let recalibrated = calibrated.interleaved(Moving::All)?;
+        // A fit of parts may fail where the whole does not, for example if it becomes too stiff to integrate.
+        let recalibrated = calibrated.interleaved(Moving::All).unwrap_or_else(|_| nominal.clone());
         // Many coefficients fitted to half of a record may predict the other half worse than the nominal
         // ones.
         let (recalibrated, last_third) = if recalibrated.mean_square() > nominal.mean_square() {
             (nominal.clone(), given.last_third(Moving::Starts)?)
         } else {
-            (recalibrated, calibrated.last_third(Moving::All)?)
+            let last_third = calibrated.last_third(Moving::All);
+            let last_third = last_third.unwrap_or_else(|_| recalibrated.mean_square());
+            (recalibrated, last_third)
         };
         let sets: Vec<Predicted<'a>> = sets.par_iter().filter_map(|set| self.predicted(set)).collect();
         Ok(Predictions { nominal, recalibrated, last_third, sets })
@@ -197,7 +200,7 @@ impl<'a> Context<'a> {
         let set = sets.into_iter().find(|own| !named.is_empty() && is_named(own));
         if let Some(Predicted { followed, fitted, after }) = set {
             let both = Both { longer: self.data, followed, segments: self.segments.data, fitted: &fitted };
-            let last_third = [third, both.last_third(Moving::All)?];
+            let last_third = [third, both.last_third(Moving::All).unwrap_or_else(|_| after.mean_square())];
             return Ok(Held { nominal, recalibrated, after, last_third, repaired: followed, fitted });
         }
         let repaired = self

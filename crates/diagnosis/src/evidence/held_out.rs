@@ -160,10 +160,13 @@ impl Both<'_> {
 #[cfg(test)]
 mod tests {
     use crate::fixtures::record;
-    use crate::{Observations, Settings, diagnose};
+    use crate::{Observations, Settings, Status, diagnose};
     use dynamics::chain::{Chain, Observed};
-    use dynamics::{Active, Nominal, System};
-    use record::{Clock, ClockChoice};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Hold, Input, Nominal, Start, System};
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
 
     /// Seven swings whose amplitude falls to a third: little more than one segment, and neither half can
     /// predict the other.
@@ -182,5 +185,31 @@ mod tests {
             |id: &str| answer.classes.iter().find(|class| class.id == id).map_or(0.0, |own| own.probability);
         assert!(of("friction") > 0.9 && of("restoring") > 0.9, "{:?}", answer.classes);
         assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor.value, "{:?}", answer.gap);
+    }
+
+    /// The start velocity of a strongly damped joint is gone after half a second: nothing but the first samples
+    /// determines it.
+    #[test]
+    fn an_exact_simulator_of_a_damped_joint_lacks_nothing() {
+        let tau = std::f64::consts::TAU;
+        let times: Vec<f64> = (0..1500).map(|at| 0.01 * f64::from(at)).collect();
+        for ratio in [0.3, 0.75] {
+            let frequency = 1.8 * tau;
+            let nominal = Nominal::new(1.0, 2.0 * ratio * frequency, frequency * frequency, 0.0).unwrap();
+            let system = System::new(nominal, Vec::new()).unwrap();
+            let command = |t: &f64| frequency * frequency * 0.5 * (tau * (0.3 + 0.08 * t) * t).sin();
+            let torque: Vec<f64> = times.iter().map(command).collect();
+            let input = Input::new(times.clone(), torque.clone(), Hold::Zero).unwrap();
+            let start = Start::release(0.0);
+            let motion = simulate(&system, start, Some(&input), &times, &Tolerance::default()).unwrap();
+            let mut generator = Seed::new(4).child("noise").generator();
+            let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+            let values = motion.position.iter().map(|x| x + 5e-4 * noise()).collect();
+            let record = Record::new(times.clone(), values, Some(torque), Quantity::Position, "rad").unwrap();
+            let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Host).unwrap());
+            let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+            assert!(matches!(answer.verdict.status, Status::None | Status::Calibration), "{ratio}");
+            assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor.value, "{ratio}: {:?}", answer.gap);
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
 use crate::evidence::probability::{Shown, probability};
-use crate::evidence::weighed_sets::{Basis, Left, Records, WeighedSets};
+use crate::evidence::weighed_sets::{Left, Records, WeighedSets};
 use crate::evidence::weights::{DISTINCT_DISTANCE, Weighed, acts, best_if_nothing_is_left};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
@@ -77,6 +77,11 @@ const WHITE: f64 = 1.05;
 /// The same for held-out parts, where the coefficients differ a little from those of the other parts.
 const PREDICTED: f64 = 1.2;
 
+/// Ratio of sums of squares below which two errors are the same to three digits, and the largest probability of
+/// a class that changes no error.
+const UNCHANGED: f64 = 1.001;
+const UNLIKELY: f64 = 0.49;
+
 /// Difference in log evidence up to which two classes can replace each other.
 const REPLACED: f64 = 2.0 * DISTINCT;
 
@@ -92,8 +97,7 @@ const TOLD: f64 = 0.9;
 const DISTINCT: f64 = 0.5 * DISTINCT_DISTANCE * DISTINCT_DISTANCE;
 
 impl<'a> Inclusion<'a> {
-    /// Weighs the sets by their residuals: by those of the fitted samples, or, if something is probably left
-    /// beside the best set, by the held-out ones.
+    /// Weighs the sets by their residuals.
     ///
     /// # Errors
     /// Any [`DynamicsError`] of the simulation.
@@ -104,9 +108,8 @@ impl<'a> Inclusion<'a> {
         let own = |set: &'b Predicted<'a>| (set.followed, &set.after);
         let bare = (records.bare, &predictions.recalibrated);
         let sets: Vec<(&'a Fit, &'b HeldOut)> = predictions.sets.iter().map(own).chain([bare]).collect();
-        let fitted = WeighedSets::of(&records, &sets, Basis::Fitted);
-        let doubt = fitted.best().map_or(Ok(1.0), |(best, error)| left_over(records.data, best, error))?;
-        let sets = if doubt > 0.5 && std::env::var("HELD").is_ok() { WeighedSets::of(&records, &sets, Basis::HeldOut) } else { fitted };
+        let sets = WeighedSets::of(&records, &sets);
+        let doubt = sets.best().map_or(Ok(1.0), |(best, error)| left_over(records.data, best, error))?;
         Ok(Self { sets: sets.priced(&records, doubt), records })
     }
 
@@ -134,8 +137,21 @@ impl<'a> Inclusion<'a> {
                     row.either = Some(row.either.map_or(either, |known| known.max(either)));
                 }
             }
+            if self.changes_nothing(*class) {
+                row.probability = row.probability.min(UNLIKELY);
+                row.either = None;
+            }
         }
         rows
+    }
+
+    /// Returns `true` if the error of the best set with a class is that of the best set without it, to three
+    /// digits.
+    fn changes_nothing(&self, class: EvidenceClass) -> bool {
+        let best = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().map(|w| w.fit).find(|fit| has(fit));
+        let with = best(&|fit| fit.hypothesis.holds(class));
+        let without = best(&|fit| fit.hypothesis.lacks(class));
+        with.zip(without).is_some_and(|(with, without)| without.squares < UNCHANGED * with.squares)
     }
 
     /// Returns the probability that at least one of two classes acts, if they can replace each other: of the

@@ -25,28 +25,11 @@ use std::f64::consts::TAU;
 /// Number of bands about the swing's half harmonics, from the mean value up.
 pub(crate) const BANDS: usize = 25;
 
-/// Number of independent squares in a bin under a Hann window, with its neighbors in the same band: a third
-/// of those in three bins, whose amplitudes have the correlations 2/3 and 1/6.
-const TAPERED_WORTH: f64 = 36.0 / 29.0;
-
-/// Transform of a segment into its spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum View {
-    /// Cosine transform: every sample has the same weight, those at the ends of a segment too. A line at one
-    /// frequency falls off by the fourth power beside it.
-    Whole,
-    /// Fourier transform under a Hann window: a line far above the noise does not leak into other bands.
-    /// Samples at the ends of a segment hardly count.
-    Tapered,
-}
-
 /// Bins of one unjoined segment.
 #[derive(Debug, Clone)]
 struct Bins {
-    /// Waves of each bin, `rows` of them. The sum of their squared products with white noise has the noise's
-    /// variance as mean.
+    /// Wave of each bin. The square of its product with white noise has the noise's variance as mean.
     waves: DMatrix<f64>,
-    rows: usize,
     /// Band of each bin.
     bands: Vec<usize>,
     /// Number of bins by band.
@@ -63,34 +46,10 @@ pub(crate) struct Likelihood {
     noise: f64,
 }
 
-impl View {
-    /// Returns the number of independent squares in a bin.
-    fn worth(self) -> f64 {
-        match self {
-            Self::Whole => 1.0,
-            Self::Tapered => TAPERED_WORTH,
-        }
-    }
-
-    /// Returns the weights of samples, normalized so that the squared wave of white noise has its variance as
-    /// mean. `after` are times since the segment's first sample.
-    fn weights(self, after: &[f64], length: f64, interval: f64) -> Vec<f64> {
-        let (window, squares): (Vec<f64>, f64) = match self {
-            Self::Whole => (vec![std::f64::consts::SQRT_2; after.len()], after.len() as f64),
-            Self::Tapered => {
-                let raised = |time: &f64| 0.5 - 0.5 * (TAU * (time + 0.5 * interval) / length).cos();
-                let window: Vec<f64> = after.iter().map(raised).collect();
-                let squares = window.iter().map(|w| w * w).sum();
-                (window, squares)
-            }
-        };
-        let norm = squares.max(f64::MIN_POSITIVE).sqrt();
-        window.into_iter().map(|w| w / norm).collect()
-    }
-}
-
 impl Bins {
-    fn new(times: &[f64], frequency: f64, interval: f64, view: View) -> Self {
+    /// Creates the bins of a cosine transform: every sample has the same weight, those at the ends of a segment
+    /// too. A line at one frequency falls off by the fourth power beside it.
+    fn new(times: &[f64], frequency: f64, interval: f64) -> Self {
         // A stretch without samples has no bins.
         let first = times.first().copied().unwrap_or_default();
         let after: Vec<f64> = times.iter().map(|time| time - first).collect();
@@ -99,25 +58,17 @@ impl Bins {
         // segment.
         let length = after.last().copied().unwrap_or_default() + interval;
         let highest = below_images(interval).min(0.5 * (BANDS as f64 - 0.5) * frequency);
-        let weights = view.weights(&after, length, interval);
-        // The cosine transform has a bin every half turn, from the middle of a step on; the windowed one has
-        // a bin every turn.
-        let (turn, begin, most) = match view {
-            View::Whole => (0.5 * TAU, 0.5 * interval, count.saturating_sub(1)),
-            View::Tapered => (TAU, 0.0, count / 2),
-        };
-        let most = ((highest * length / turn) as usize).min(most);
-        let mut waves = Vec::with_capacity(2 * (most + 1) * count);
+        let weight = (2.0 / count.max(1) as f64).sqrt();
+        // A bin every half turn, from the middle of a step on.
+        let (turn, begin) = (0.5 * TAU, 0.5 * interval);
+        let most = ((highest * length / turn) as usize).min(count.saturating_sub(1));
+        let mut waves = Vec::with_capacity((most + 1) * count);
         let mut bands = Vec::with_capacity(most + 1);
         for bin in 0..=most {
             let omega = turn * bin as f64 / length;
             // The constant has no sine beside its cosine, and all of the power.
-            let size = if bin == 0 && view == View::Whole { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
-            let along = || weights.iter().zip(&after);
-            waves.extend(along().map(|(w, t)| size * w * (omega * (t + begin)).cos()));
-            if view == View::Tapered {
-                waves.extend(along().map(|(w, t)| w * (omega * t).sin()));
-            }
+            let size = if bin == 0 { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
+            waves.extend(after.iter().map(|t| size * weight * (omega * (t + begin)).cos()));
             bands.push(((2.0 * omega / frequency).round() as usize).min(BANDS - 1));
         }
         let mut counts = [0.0; BANDS];
@@ -126,17 +77,16 @@ impl Bins {
                 *slot += 1.0;
             }
         }
-        let rows = if view == View::Tapered { 2 } else { 1 };
-        Self { waves: DMatrix::from_row_slice(rows * bands.len(), count, &waves), rows, bands, counts }
+        Self { waves: DMatrix::from_row_slice(bands.len(), count, &waves), bands, counts }
     }
 
     /// Returns the sum of squares by band.
     fn powers(&self, residual: &DVector<f64>) -> [f64; BANDS] {
         let mut powers = [0.0; BANDS];
         let values = &self.waves * residual;
-        for (own, band) in values.as_slice().chunks(self.rows).zip(&self.bands) {
+        for (value, band) in values.iter().zip(&self.bands) {
             if let Some(slot) = powers.get_mut(*band) {
-                *slot += own.iter().map(|value| value * value).sum::<f64>();
+                *slot += value * value;
             }
         }
         powers
@@ -147,14 +97,14 @@ impl Likelihood {
     /// Creates the likelihood of residuals by unjoined segment. `closest` is the residual of the closest set:
     /// it determines how many independent squares a band has. `noise` is the standard deviation of the
     /// sensor's noise.
-    pub(crate) fn of(data: &Data, closest: &[DVector<f64>], noise: f64, view: View) -> Self {
+    pub(crate) fn of(data: &Data, closest: &[DVector<f64>], noise: f64) -> Self {
         let mut bins = Vec::new();
         let interval = data.interval();
         for segment in &data.segments {
             for part in segment.part_ranges() {
                 // Ranges of parts lie within their segment.
                 let times = segment.times.get(part).unwrap_or_default();
-                bins.push(Bins::new(times, data.facts.frequency, interval, view));
+                bins.push(Bins::new(times, data.facts.frequency, interval));
             }
         }
         let mut own = Self { bins, worth: Vec::new(), noise: noise * noise };
@@ -166,7 +116,7 @@ impl Likelihood {
         let worth = |(bins, powers): (&Bins, &[f64; BANDS])| {
             let mut worth = bins.counts;
             for (worth, power) in worth.iter_mut().zip(powers).filter(|(worth, _)| **worth > 0.0) {
-                *worth *= view.worth() * share(power / *worth);
+                *worth *= share(power / *worth);
             }
             worth
         };
@@ -210,7 +160,7 @@ impl Likelihood {
 
 #[cfg(test)]
 mod tests {
-    use super::{Likelihood, View};
+    use super::Likelihood;
     use crate::evidence::score::calibrated_swing;
     use crate::fixtures::record;
     use crate::{Observations, Settings, diagnose};
@@ -228,36 +178,45 @@ mod tests {
         lengths.iter().map(|length| DVector::from_fn(*length, |_, _| draw())).collect()
     }
 
-    /// Eight samples of five standard deviations are worth a hundred nats, wherever they lie.
+    /// Eight samples of five standard deviations are worth dozens of nats, wherever they lie.
     #[test]
     fn what_lies_at_the_end_of_a_segment_counts() {
         let (data, _) = calibrated_swing();
         let lengths: Vec<usize> = data.segments.iter().map(|segment| segment.times.len()).collect();
-        let gains = [View::Whole, View::Tapered].map(|view| {
-            let white = noise(&lengths, 1);
-            let mut clipped = white.clone();
-            clipped[0].rows_mut(0, 8).add_scalar_mut(5.0);
-            let likelihood = Likelihood::of(&data, &white, 1.0, view);
-            likelihood.log(&white) - likelihood.log(&clipped)
-        });
-        assert!(gains[0] > 30.0 && gains[1].abs() < 5.0, "{gains:?}");
+        let white = noise(&lengths, 1);
+        let mut clipped = white.clone();
+        clipped[0].rows_mut(0, 8).add_scalar_mut(5.0);
+        let likelihood = Likelihood::of(&data, &white, 1.0);
+        let gain = likelihood.log(&white) - likelihood.log(&clipped);
+        assert!(gain > 30.0, "{gain}");
     }
 
     /// The power of white noise by bin is its variance.
     #[test]
-    fn white_noise_has_its_variance_in_either_view() {
+    fn white_noise_has_its_variance() {
         let (data, _) = calibrated_swing();
         let lengths: Vec<usize> = data.segments.iter().map(|segment| segment.times.len()).collect();
-        for view in [View::Whole, View::Tapered] {
-            let (mut power, mut bins) = (0.0, 0.0);
-            for seed in 0..20 {
-                let white = noise(&lengths, seed);
-                let likelihood = Likelihood::of(&data, &white, 1.0, view);
-                power += likelihood.powers(&white).iter().flatten().sum::<f64>();
-                bins += likelihood.bins.iter().flat_map(|own| own.counts).sum::<f64>();
-            }
-            assert!((power / bins - 1.0).abs() < 0.05, "{view:?}: {}", power / bins);
+        let (mut power, mut bins) = (0.0, 0.0);
+        for seed in 0..20 {
+            let white = noise(&lengths, seed);
+            let likelihood = Likelihood::of(&data, &white, 1.0);
+            power += likelihood.powers(&white).iter().flatten().sum::<f64>();
+            bins += likelihood.bins.iter().flat_map(|own| own.counts).sum::<f64>();
         }
+        assert!((power / bins - 1.0).abs() < 0.05, "{}", power / bins);
+    }
+
+    /// A set that is far off in one segment and right in all others is better than one that is off in all.
+    #[test]
+    fn one_segment_does_not_outweigh_the_others() {
+        let (data, _) = calibrated_swing();
+        let lengths: Vec<usize> = data.segments.iter().map(|segment| segment.times.len()).collect();
+        let white = noise(&lengths, 1);
+        let likelihood = Likelihood::of(&data, &white, 1.0);
+        let off_in_all: Vec<DVector<f64>> = white.iter().map(|own| own * 10.0).collect();
+        let mut off_in_one = white.clone();
+        off_in_one[0] *= 100.0;
+        assert!(likelihood.log(&off_in_one) > likelihood.log(&off_in_all) + 100.0);
     }
 
     /// Only the first peak of 25 s exceeds the range.

@@ -38,11 +38,11 @@ struct Learned {
 
 /// Coefficients if something is left beside the best set.
 const DOUBTED: Learned =
-    Learned { constant: -2.09, replacement: 0.60, half_swings: 0.50, error: 0.38, leads: 0.32, none: -0.09 };
+    Learned { constant: -2.39, replacement: 0.77, half_swings: 0.19, error: 0.33, leads: 0.20, none: -0.74 };
 
 /// Coefficients if nothing is left.
 const CLEAN: Learned =
-    Learned { constant: -3.19, replacement: 0.97, half_swings: 0.31, error: 0.35, leads: 0.70, none: -2.28 };
+    Learned { constant: -3.28, replacement: 0.94, half_swings: 0.56, error: 0.43, leads: 0.37, none: -0.62 };
 
 /// Evidence for a class, or for one of two that replace each other.
 pub(crate) struct Shown<'e> {

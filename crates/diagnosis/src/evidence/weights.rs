@@ -1,7 +1,7 @@
 //! Weights of sets: from log evidence to probabilities, and the prices of effects.
 
 use crate::data::segments::Data;
-use crate::evidence::likelihood::{Likelihood, View};
+use crate::evidence::likelihood::Likelihood;
 use crate::evidence::score::{further_starts, parameter_price};
 use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
@@ -89,7 +89,7 @@ impl<'a> Weighing<'a> {
         let closest = archive.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
         let closest = &closest.unwrap_or(calibrated).residuals;
         let noise = crate::noise::floor::floor(data, closest).value;
-        let likelihood = Likelihood::of(data, &data.by_part(closest), noise, View::Whole);
+        let likelihood = Likelihood::of(data, &data.by_part(closest), noise);
         let bare = likelihood.log(&data.by_part(&calibrated.residuals));
         Self { data, calibrated, likelihood, bare, vocabulary }
     }

@@ -101,12 +101,7 @@ pub(crate) fn gap(
     };
     let over = interval([&repaired, &floors, &floors], |[after, noise, _]| [after, noise]);
     let ratio = (rm / noise).sqrt();
-    let freedom: f64 = stages
-        .repaired
-        .residuals
-        .iter()
-        .map(|e| e.len() as f64)
-        .sum();
+    let freedom: f64 = stages.repaired.residuals.iter().map(|e| e.len() as f64).sum();
     let left: f64 = stages.ceiling.iter().map(DVector::norm_squared).sum();
     Gap {
         unit,

@@ -10,7 +10,7 @@ use crate::answer::Finding;
 use crate::data::observations::Observations;
 use crate::data::segments::{Data, Segment};
 use crate::data::shooting_interval::{ShootingInterval, shortened};
-use crate::evidence::likelihood::{Likelihood, View};
+use crate::evidence::likelihood::Likelihood;
 use crate::evidence::score::{parameter_price, score, score_with};
 use crate::evidence::weights::price;
 use crate::fit::fitted::Fit;
@@ -254,7 +254,7 @@ fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError
     };
     let (before, after) = (by_segment(&residual), by_segment(&left));
     let noise = floor::floor(data, &fit.residuals).value;
-    let likelihood = Likelihood::of(data, &after, noise, View::Whole);
+    let likelihood = Likelihood::of(data, &after, noise);
     // The search on the corrected clocks decides whether the rates gain enough.
     let price = parameter_price(records - 1, likelihood.worth());
     if likelihood.log(&after) - likelihood.log(&before) <= price {

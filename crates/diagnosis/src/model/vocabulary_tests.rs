@@ -8,6 +8,7 @@ use dynamics::{Coordinate, Hold, Input, Nominal, REGISTRY};
 use record::Quantity;
 
 const FACTS: Scales = Scales {
+    noise: 0.0,
     amplitude: 0.7,
     highest: 0.7,
     lowest: -0.7,
@@ -58,7 +59,8 @@ fn parameters_are_the_laws_own() {
 }
 
 /// A swing of 22 rad/s that decays at 0.1/s, released once.
-const SWING: MainMode = MainMode {
+const SWING: MainMode<'static> = MainMode {
+    inputs: &[],
     frequency: 22.0,
     decay_rate: 0.1,
     inertia: 1.0,

@@ -96,6 +96,22 @@ pub(crate) fn share(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     gain.iter().sum::<f64>() / squares.max(f64::MIN_POSITIVE)
 }
 
+/// Power of a line relative to its neighbors, and its share of the squares, from which on it stands out. White
+/// noise exceeds its mean by this factor in one of 5e8 bins.
+const STANDS_OUT: f64 = 20.0;
+const LEAST_SHARE: f64 = 0.003;
+
+/// Returns `true` if values have a line at an angular frequency: their power there stands out from that three to
+/// six resolutions beside it.
+pub(crate) fn has_line(times: &[f64], values: &[f64], frequency: f64) -> bool {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return false };
+    let resolution = std::f64::consts::TAU / (last - first).max(f64::MIN_POSITIVE);
+    let share = |off: f64| share(times, values, (frequency + off * resolution).max(resolution));
+    let own = [-0.5, -0.25, 0.0, 0.25, 0.5].map(share).into_iter().fold(0.0, f64::max);
+    let beside = [3.0, 4.0, 5.0, 6.0].map(|off| 0.5 * (share(off) + share(-off)));
+    own > LEAST_SHARE && own > STANDS_OUT * mean(&beside)
+}
+
 /// Returns the angular frequency of the line that holds most of the squares of values about their mean;
 /// `None` if there is no such line.
 pub(crate) fn dominant_frequency(times: &[f64], values: &[f64]) -> Option<f64> {
@@ -171,5 +187,22 @@ mod tests {
         add(&plain, plain.len() as f64, 10.0, 0.1, &mut steady);
         let share = peaks(&steady, 10.0, 0.1, 1)[0].gain / best.gain;
         assert!((share / (2.0 / (rate * 25.0)) - 1.0).abs() < 0.1, "{share}");
+    }
+
+    /// A chirp and noise hold every frequency, and a line at none.
+    #[test]
+    fn tells_a_line_from_a_chirp_and_from_noise() {
+        use rand_distr::{Distribution, StandardNormal};
+        let times: Vec<f64> = (0..2000).map(|at| 0.01 * f64::from(at)).collect();
+        let tau = std::f64::consts::TAU;
+        let lines: Vec<f64> = times.iter().map(|t| (tau * 0.9 * t).sin() + (tau * 2.1 * t).sin()).collect();
+        let chirp: Vec<f64> = times.iter().map(|t| (tau * (0.2 + 0.2 * t) * t).sin()).collect();
+        let generator = seed::Seed::new(2).child("noise").generator();
+        let noise: Vec<f64> = StandardNormal.sample_iter(generator).take(2000).collect();
+        let has = |values: &[f64], hertz: f64| super::has_line(&times, values, tau * hertz);
+        assert!(has(&lines, 0.9) && has(&lines, 2.1) && !has(&lines, 1.4));
+        for hertz in [0.9, 1.4, 2.1, 3.3] {
+            assert!(!has(&chirp, hertz) && !has(&noise, hertz), "{hertz}");
+        }
     }
 }

@@ -126,7 +126,8 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
         Err(_) => (data.facts.frequency, f64::INFINITY, data.facts.inertia),
     };
     let (resolution, repeats) = (TAU / data.facts.duration, data.facts.repeats);
-    let swing = MainMode { frequency, decay_rate, inertia, resolution, starts_once, repeats };
+    let swing =
+        MainMode { frequency, decay_rate, inertia, resolution, starts_once, repeats, inputs: &data.inputs };
     members.any(|(candidate, part)| !candidate.is_itself(part, &swing))
 }
 

@@ -14,8 +14,6 @@ pub(crate) struct Breadth {
     pub(crate) singles: usize,
     /// Number of pairs fitted in the first round.
     pub(crate) pairs: usize,
-    /// Number of sets that each later round expands.
-    pub(crate) beam: usize,
     /// Number of candidates added to each of them.
     pub(crate) additions: usize,
 }

@@ -13,7 +13,6 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::{Dictionary, Gain};
-use crate::noise::floor::floor;
 use crate::search::archive::{Archive, is_another};
 use crate::search::asked::Asked;
 use crate::search::from_afar::from_afar;
@@ -43,6 +42,7 @@ const FAR_BEHIND: f64 = 30.0;
 /// Proposes additions at a fit. `best` marks the best set.
 fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
     let &Asked { data, candidates, breadth, threshold, .. } = asked;
+    let additions_tried = if leaves_more(data, base) { 2 * breadth.additions } else { breadth.additions };
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
     let size = base.hypothesis.counted().count();
@@ -58,13 +58,13 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
     if size < breadth.most_effects {
         let worth = |gain: f64, looked: f64| promising(base, time, gain, threshold, looked);
         for gain in
-            ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+            ranked.iter().take(additions_tried).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
         {
             proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
             // If fewer candidates are ranked than are added, any gain is enough.
-            let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
+            let weakest = ranked.get(additions_tried).map_or(0.0, |other| other.squares);
             // A gain from a spectrum is less reliable than a linearization: at the best set such a candidate
             // is tried in any case.
             let own = (*candidate, *gain);
@@ -191,7 +191,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
 
 /// Returns `true` if a set leaves so much more than noise that something must be missing from it.
 fn leaves_more(data: &Data, set: &Fit) -> bool {
-    (set.squares / set.freedom()).sqrt() > LEFT * floor(data, &set.residuals).value
+    (set.squares / set.freedom()).sqrt() > LEFT * data.facts.noise
 }
 
 /// Returns the sets to expand next: the best one of each size. If all of these are expanded already, the next
@@ -225,8 +225,10 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
             break;
         }
         let best = ranked.first().map(|best| best.hypothesis.ranks());
-        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> =
-            bases.par_iter().map(|base| moves(asked, base, best.as_ref() == Some(&base.hypothesis.ranks()))).collect();
+        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
+            .par_iter()
+            .map(|base| moves(asked, base, best.as_ref() == Some(&base.hypothesis.ranks())))
+            .collect();
         let mut proposals: Vec<Proposal> = Vec::new();
         for (own, dropped) in moves {
             // A set that a better one has proposed already begins from there.
@@ -240,9 +242,10 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         settle(data, pool, tried, proposals);
         let time = pool.autocorrelation_time();
         if pool.highest(time) - before < threshold
-            && pool.ranked(time).first().is_some_and(|fit| {
-                expanded.contains(&fit.hypothesis.ranks()) && !leaves_more(data, fit)
-            })
+            && pool
+                .ranked(time)
+                .first()
+                .is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()) && !leaves_more(data, fit))
         {
             break;
         }

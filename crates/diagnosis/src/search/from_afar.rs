@@ -24,16 +24,19 @@ pub(crate) fn from_afar(asked: &Asked<'_>, archive: &mut Archive) {
     let (short, begins) = data.split(0);
     let begun = |set: &Begun| {
         let state = |segment: &Segment| proposed.state(segment.record, *segment.times.first()?);
-        let starts = short.segments.iter().map(|own| extended(&state(own).unwrap_or(own.guess), &set.hypothesis));
+        let starts =
+            short.segments.iter().map(|own| extended(&state(own).unwrap_or(own.guess), &set.hypothesis));
         let point = Point { globals: set.globals.clone(), starts: starts.collect() };
         fit(&short, &set.hypothesis, point, Moving::All, Stopping::SEARCH).ok()
     };
     let first: Vec<Option<Fit>> = proposed.sets.par_iter().map(begun).collect();
     let mut first: Vec<Fit> = first.into_iter().flatten().collect();
-    let time = first.iter().min_by(|a, b| a.squares.total_cmp(&b.squares)).map_or(1.0, Fit::autocorrelation_time);
+    let time =
+        first.iter().min_by(|a, b| a.squares.total_cmp(&b.squares)).map_or(1.0, Fit::autocorrelation_time);
     first.sort_by(|a, b| score(b, time).total_cmp(&score(a, time)));
     first.truncate(MOST);
-    let longer: Vec<Option<Fit>> = first.into_par_iter().map(|set| lengthened(data, begins.clone(), set)).collect();
+    let longer: Vec<Option<Fit>> =
+        first.into_par_iter().map(|set| lengthened(data, begins.clone(), set)).collect();
     for set in longer.into_iter().flatten() {
         archive.admit(data, set);
     }
@@ -46,7 +49,10 @@ fn lengthened(data: &Data, mut begins: Vec<Vec<usize>>, mut set: Fit) -> Option<
         let (longer, next) = data.split(times);
         let places = begins.iter().zip(&next).flat_map(|(old, new)| old.iter().map(|at| new.contains(at)));
         let starts = set.point.starts.iter().zip(places).filter(|(_, stays)| *stays);
-        let point = Point { globals: set.point.globals.clone(), starts: starts.map(|(start, _)| start.clone()).collect() };
+        let point = Point {
+            globals: set.point.globals.clone(),
+            starts: starts.map(|(start, _)| start.clone()).collect(),
+        };
         let ended = fit(&longer, &set.hypothesis, point, Moving::All, Stopping::SEARCH).ok()?;
         let lost = gone(&longer, &ended);
         set = if lost.is_empty() {

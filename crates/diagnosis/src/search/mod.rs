@@ -4,7 +4,6 @@ pub(crate) mod alternatives;
 pub(crate) mod archive;
 pub(crate) mod asked;
 pub(crate) mod beam;
-pub(crate) mod chains;
 pub(crate) mod from_afar;
 pub(crate) mod gains;
 pub(crate) mod nameless;

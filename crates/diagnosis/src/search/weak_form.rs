@@ -64,12 +64,15 @@ impl Proposed {
     /// Proposes the best sets of up to `most` laws: with a free rest angle, and with the stated one.
     pub(crate) fn of(data: &Data, calibrated: &Fit, candidates: &[Candidate], most: usize) -> Self {
         let hypothesis = &calibrated.hypothesis;
-        let stated = hypothesis.calibrated.contains(&Calibrated::RestAngle).then(|| hypothesis.nominal.rest_angle());
+        let stated =
+            hypothesis.calibrated.contains(&Calibrated::RestAngle).then(|| hypothesis.nominal.rest_angle());
         let rests: Vec<Option<f64>> = [None].into_iter().chain(stated.map(Some)).collect();
         let found = rests.par_iter().map(|rest| WeakForm::of(data, calibrated, candidates, *rest));
-        let found: Vec<Option<(Self, Vec<Begun>)>> = found.map(|own| own.map(|own| (own.motion(), own.sets(most)))).collect();
-        found.into_iter().flatten().fold(Self::default(), |all, (motion, sets)| {
-            Self { sets: all.sets.into_iter().chain(sets).collect(), ..motion }
+        let found: Vec<Option<(Self, Vec<Begun>)>> =
+            found.map(|own| own.map(|own| (own.motion(), own.sets(most)))).collect();
+        found.into_iter().flatten().fold(Self::default(), |all, (motion, sets)| Self {
+            sets: all.sets.into_iter().chain(sets).collect(),
+            ..motion
         })
     }
 
@@ -103,12 +106,7 @@ impl<'a> WeakForm<'a> {
     /// Sets up the equations of a data set; `None` if there are no laws or too few samples. Laws about the rest
     /// angle, such as a play, have their middle at the `rest` angle if one is given, and a constant torque is
     /// then one of the laws; otherwise the rest angle is free.
-    fn of(
-        data: &'a Data,
-        calibrated: &'a Fit,
-        candidates: &[Candidate],
-        rest: Option<f64>,
-    ) -> Option<Self> {
+    fn of(data: &'a Data, calibrated: &'a Fit, candidates: &[Candidate], rest: Option<f64>) -> Option<Self> {
         let hypothesis = &calibrated.hypothesis;
         let found = hypothesis.calibrated_nominal(&calibrated.point.globals).ok()?;
         let own = found.coefficients();
@@ -173,7 +171,10 @@ impl<'a> WeakForm<'a> {
         let all = 0..self.dictionary.entries.len();
         for set in sets {
             for entry in all.clone().filter(|entry| self.fits(&set.entries, *entry)) {
-                self.dictionary.gain(&[set.entries.as_slice(), &[entry]].concat()).into_iter().for_each(&mut take);
+                self.dictionary
+                    .gain(&[set.entries.as_slice(), &[entry]].concat())
+                    .into_iter()
+                    .for_each(&mut take);
             }
         }
         let mut best: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
@@ -188,8 +189,12 @@ impl<'a> WeakForm<'a> {
     fn reshaped(&self, gain: Gain) -> Gain {
         let mut best = gain;
         for place in 0..best.entries.len() {
-            let Some(candidate) = best.entries.get(place).and_then(|entry| self.candidate(*entry)) else { continue };
-            for entry in (0..self.dictionary.entries.len()).filter(|own| self.candidate(*own) == Some(candidate)) {
+            let Some(candidate) = best.entries.get(place).and_then(|entry| self.candidate(*entry)) else {
+                continue;
+            };
+            for entry in
+                (0..self.dictionary.entries.len()).filter(|own| self.candidate(*own) == Some(candidate))
+            {
                 let mut entries = best.entries.clone();
                 entries.iter_mut().skip(place).take(1).for_each(|own| *own = entry);
                 if let Some(other) = self.dictionary.gain(&entries).filter(|own| own.squares > best.squares) {
@@ -220,8 +225,12 @@ impl<'a> WeakForm<'a> {
 
     /// Returns the values at which the fit of a set begins; `None` if they are those of no oscillator.
     fn begun(&self, gain: &Gain) -> Option<Begun> {
-        let columns: Vec<usize> =
-            gain.entries.iter().filter_map(|entry| self.dictionary.entries.get(*entry)).flat_map(|own| own.columns.clone()).collect();
+        let columns: Vec<usize> = gain
+            .entries
+            .iter()
+            .filter_map(|entry| self.dictionary.entries.get(*entry))
+            .flat_map(|own| own.columns.clone())
+            .collect();
         let coefficients = DMatrix::from_column_slice(gain.coefficients.len(), 1, &gain.coefficients);
         let rest = &self.torque - self.laws.select_columns(&columns) * coefficients;
         let solution = solve(&self.oscillator.tr_mul(&self.oscillator), &self.oscillator.tr_mul(&rest))?;
@@ -238,7 +247,11 @@ impl<'a> WeakForm<'a> {
             let (first, rest) = sizes.split_at_checked(own.columns.len())?;
             sizes = rest;
             // With the stiffness free, the coefficient of a law that is its own shape is not its secant's.
-            let values = if own.candidate.is_its_own_shape() { own.shape.clone() } else { self.dictionary.parameters(*entry, first) };
+            let values = if own.candidate.is_its_own_shape() {
+                own.shape.clone()
+            } else {
+                self.dictionary.parameters(*entry, first)
+            };
             members.push((own.candidate, values));
         }
         members.sort_by_key(|(candidate, _)| candidate.rank());
@@ -290,9 +303,13 @@ struct Rows {
 
 impl Rows {
     fn add(&mut self, seen: &Seen<'_>, hypothesis: &Hypothesis, entries: &[(Candidate, Vec<f64>)]) {
-        let columns: Vec<Vec<Vec<f64>>> = entries.iter().map(|(law, shape)| seen.columns(*law, shape)).collect();
+        let columns: Vec<Vec<Vec<f64>>> =
+            entries.iter().map(|(law, shape)| seen.columns(*law, shape)).collect();
         self.counts = columns.iter().map(Vec::len).collect();
-        let known = hypothesis.known.iter().filter_map(|own| seen.torque(own.candidate, &own.candidate.values(&own.stated)));
+        let known = hypothesis
+            .known
+            .iter()
+            .filter_map(|own| seen.torque(own.candidate, &own.candidate.values(&own.stated)));
         let acting: Vec<Vec<f64>> = known.chain([seen.input.clone()]).collect();
         let ones = vec![1.0; seen.run.times.len()];
         let period = TAU / seen.data.facts.frequency;
@@ -344,7 +361,9 @@ impl Rows {
         let laws: Vec<f64> = self.laws.iter().flatten().map(|own| -own).collect();
         let laws = DMatrix::from_row_slice(rows, width, &laws);
         let products = oscillator.tr_mul(&oscillator);
-        let without = |columns: &DMatrix<f64>| Some(columns - &oscillator * solve(&products, &oscillator.tr_mul(columns))?);
+        let without = |columns: &DMatrix<f64>| {
+            Some(columns - &oscillator * solve(&products, &oscillator.tr_mul(columns))?)
+        };
         let (columns, residual) = (without(&laws)?, without(&torque)?);
         let dictionary = Dictionary::of_columns(entries, &self.counts, &laws, columns, &residual);
         Some(WeakForm { data, hypothesis, nominal, free, runs, oscillator, torque, laws, dictionary })
@@ -459,7 +478,52 @@ fn bumps(times: &[f64], period: f64) -> Vec<Bump> {
 
 #[cfg(test)]
 mod tests {
-    use super::Bump;
+    use super::{Bump, Proposed};
+    use crate::data::observations::Observations;
+    use crate::data::segments::cut;
+    use crate::fit::calibrate::baseline;
+    use crate::fixtures::record;
+    use crate::model::candidate::Candidate;
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
+    use record::{Clock, ClockChoice};
+
+    /// Returns the proposed sets for a swing with some effects, each with the values of its members.
+    fn proposed(effects: &[(&str, &[f64])]) -> Vec<(Vec<&'static str>, Vec<f64>)> {
+        let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
+        let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+        let system = System::new(nominal, active).unwrap();
+        let chain = Chain::new(Observed::Position, 1e-3, Vec::new()).unwrap();
+        let record = record(&system, 0.6, 1500, &chain, 1);
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let observed = Observations::new(&record, &clock);
+        let simulator = (&nominal).into();
+        let kept = vec![true; observed.len()];
+        let data = cut(std::slice::from_ref(&observed), &[kept], &simulator).unwrap();
+        let base = baseline(&data, &simulator).unwrap().calibrated;
+        let candidates = Candidate::that_apply(&data.facts, data.quantity, &simulator);
+        let found = Proposed::of(&data, &base, &candidates, 2);
+        let first = base.hypothesis.calibrated.len();
+        let of = |set: &super::Begun| (set.hypothesis.ids(), set.globals[first..].to_vec());
+        found.sets.iter().map(of).collect()
+    }
+
+    /// With a torque that holds the body beside the middle of its play, the mean of the swing is not the middle.
+    #[test]
+    fn proposes_a_large_play_beside_a_constant_torque() {
+        let sets = proposed(&[("backlash", &[0.24]), ("constant_torque", &[20.0])]);
+        let set = sets.iter().find(|(ids, _)| *ids == ["backlash", "constant_torque"]);
+        let (_, values) = set.unwrap_or_else(|| panic!("{sets:?}"));
+        assert!((values[0] / 0.24 - 1.0).abs() < 0.2, "{values:?}");
+    }
+
+    #[test]
+    fn proposes_a_stop_that_is_met_on_every_swing() {
+        let sets = proposed(&[("end_stop", &[0.3, 12_000.0, 0.02])]);
+        let (ids, values) = &sets[0];
+        assert_eq!(ids, &["end_stop"]);
+        assert!((values[0] - 0.3).abs() < 0.05, "{values:?}");
+    }
 
     /// ∫(1 − s²)⁴ ds = 256/315. Integrated by parts, φ̈ gives the second derivative of a parabola, φ̇ minus
     /// the slope of a line.

@@ -8,12 +8,17 @@ use crate::evidence::context::{Context, Held, Shift};
 use crate::evidence::half_swings::half_swings;
 use crate::evidence::inclusion::{Inclusion, asked};
 use crate::evidence::weighed_sets::Records;
+use crate::evidence::weights::Weighed;
 use crate::fit::fitted::Fit;
 use std::cell::OnceCell;
 
 /// Log evidence in nats by which the set of all likely classes may predict worse than the best set of some of
 /// them.
 const WORSE: f64 = 3.0;
+
+/// Log evidence in nats by which the best set of likely classes alone may lie behind the best set. Beyond that the
+/// simulator needs the other effects of that set, though none of them is likely by itself.
+const BEHIND: f64 = 30.0;
 
 /// Classes with their probabilities, and the repaired simulator.
 pub(crate) struct Judged<'a> {
@@ -55,6 +60,16 @@ impl<'a> Judged<'a> {
                 chosen.clone_from(&set.followed.hypothesis.candidates);
                 predictions.sets.push(set);
             }
+        }
+        let own = inclusion.sets.weighed.iter().find(|w| w.fit.hypothesis.candidates == chosen);
+        let holds_all = |w: &&Weighed<'_>| {
+            names.iter().all(|id| w.fit.hypothesis.counted().any(|own| own.evidence_class().id() == *id))
+        };
+        let fuller = inclusion.sets.weighed.first().filter(holds_all).filter(|_| !names.is_empty());
+        if let (Some(own), Some(fuller)) = (own, fuller)
+            && fuller.evidence - own.evidence > BEHIND
+        {
+            chosen.clone_from(&fuller.fit.hypothesis.candidates);
         }
         let held = work.held_out(predictions, &chosen)?;
         let has_one = chosen.iter().any(|own| own.id() == "constant_torque");

@@ -3,9 +3,8 @@
 use super::{Question, Request};
 use crate::data::segments::Data;
 use crate::data::shooting_interval::{ShootingInterval, shortened};
-use crate::evidence::left_over::unexplained;
 use crate::evidence::score::score;
-use crate::evidence::weights::{acts, price};
+use crate::evidence::weights::price;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
@@ -13,8 +12,6 @@ use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use crate::search::asked::{Asked, Breadth};
 use crate::search::beam::{Explored, go_on, search};
-use crate::search::chains::chains;
-use crate::search::gains::WHITE;
 use crate::search::plain::plain_family;
 use crate::search::proposals::proposal;
 use rayon::prelude::*;
@@ -57,7 +54,6 @@ impl Searched {
             most_effects: request.settings.most_effects.clamp(1, MOST_EFFECTS),
             singles: 8,
             pairs: 8,
-            beam: 3,
             additions: 4,
         };
         let Question { candidates, proposed, coarse, coarse_base, enough, .. } = question;
@@ -73,7 +69,7 @@ impl Searched {
         let ShootingInterval { data, calibrated, .. } = &interval;
         let asked = Asked { data, calibrated, ..asked };
         plain_family(data, calibrated, candidates, &mut explored.archive);
-        further(&asked, &mut explored);
+        go_on(&asked, &mut explored);
         let found = explored.archive;
         Self { interval, found, breadth }
     }
@@ -160,21 +156,6 @@ impl Known {
         let sets = if set.hypothesis.candidates.is_empty() { Vec::new() } else { vec![set] };
         Some((interval, sets))
     }
-}
-
-/// Continues the search from sets that it has not expanded ([`chains`]), if the best set leaves more than
-/// noise.
-fn further(asked: &Asked<'_>, explored: &mut Explored) {
-    let found = &mut explored.archive;
-    let leaves_more = |best: &Fit| {
-        let left = || unexplained(asked.data, best).map_or(f64::INFINITY, |left| left.evidence);
-        best.autocorrelation_time() > WHITE || acts(left()) > 0.5
-    };
-    if !found.ranked(found.autocorrelation_time()).first().is_some_and(|best| leaves_more(best)) {
-        return;
-    }
-    chains(asked, found);
-    go_on(asked, explored);
 }
 
 /// Searches on the longest shooting interval on which the recalibrated simulator is a valid start, and

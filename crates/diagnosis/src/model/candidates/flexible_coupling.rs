@@ -107,7 +107,7 @@ impl CandidateLaw for FlexibleCoupling {
     ///
     /// At the limits of its parameters' ranges, a second body whose mode does not decay within the records is
     /// a forcing, and one that is much slower than the swing is a drift.
-    fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
+    fn is_itself(&self, fitted: &[f64], swing: &MainMode<'_>) -> bool {
         let &[body, mode, rate] = fitted else { return true };
         let line = mode * (1.0 + body / swing.inertia).sqrt();
         let order = (line / swing.frequency).round().max(1.0);

@@ -119,7 +119,7 @@ pub(crate) trait CandidateLaw: Sync {
 
     /// Returns `true` if the effect with these fit parameters deserves its name, beside a swing. Default:
     /// `true`.
-    fn is_itself(&self, _fitted: &[f64], _swing: &MainMode) -> bool {
+    fn is_itself(&self, _fitted: &[f64], _swing: &MainMode<'_>) -> bool {
         true
     }
 

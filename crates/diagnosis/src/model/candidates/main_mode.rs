@@ -1,10 +1,12 @@
 //! Main motion, from which a second body or a forcing has to differ.
 
 use crate::data::scales::Repeats;
+use crate::noise::periodogram::has_line;
+use dynamics::Input;
 
 /// Main motion, from which a second body or a forcing has to differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct MainMode {
+pub(crate) struct MainMode<'a> {
     /// Angular frequency in rad/s.
     pub(crate) frequency: f64,
     /// Decay rate of the amplitude in 1/s.
@@ -17,4 +19,14 @@ pub(crate) struct MainMode {
     pub(crate) starts_once: bool,
     /// Repetition of a driven motion; `None` if it does not repeat.
     pub(crate) repeats: Option<Repeats>,
+    /// Input of each record.
+    pub(crate) inputs: &'a [Option<Input>],
+}
+
+impl MainMode<'_> {
+    /// Returns `true` if an input has a line at an angular frequency. What moves the body there may have come by
+    /// the input's own path: its derivative, a delay, another behavior between its samples.
+    pub(crate) fn is_of_input(&self, frequency: f64) -> bool {
+        self.inputs.iter().flatten().any(|input| has_line(input.times(), input.values(), frequency))
+    }
 }

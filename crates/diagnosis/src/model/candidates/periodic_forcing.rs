@@ -62,9 +62,12 @@ impl CandidateLaw for PeriodicForcing {
     }
 
     /// Everything that depends on a repeating motion has lines at multiples of its frequency. A forcing there
-    /// cannot be told from any law that the model lacks.
-    fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
-        fitted.get(1).is_none_or(|frequency| !swing.repeats.is_some_and(|own| own.has(*frequency)))
+    /// cannot be told from any law that the model lacks, nor one at a line of the input from an error of the
+    /// input's own path.
+    fn is_itself(&self, fitted: &[f64], swing: &MainMode<'_>) -> bool {
+        fitted.get(1).is_none_or(|frequency| {
+            !swing.repeats.is_some_and(|own| own.has(*frequency)) && !swing.is_of_input(*frequency)
+        })
     }
 
     fn is_chosen_by_frequency(&self) -> bool {
