@@ -30,13 +30,6 @@ const LINEAR: f64 = 0.05;
 /// Number of sets that are tried on a longer shooting interval.
 const TRIED: usize = 6;
 
-/// Sample of a segment at which a kept part of it begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Origin {
-    pub(crate) segment: usize,
-    pub(crate) sample: usize,
-}
-
 impl Data {
     /// Joins neighboring segments of each record, up to `by` segments into one.
     pub(crate) fn joined(&self, by: usize) -> Self {
@@ -68,26 +61,26 @@ impl Data {
         counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
     }
 
-    /// Keeps the parts that `keep` accepts by the index of their unjoined segment. Segments without an accepted
-    /// part are left out. Also returns where each kept segment begins.
-    pub(crate) fn masked(&self, keep: &dyn Fn(usize) -> bool) -> (Self, Vec<Origin>) {
-        let firsts = self.firsts();
-        self.keeping(|number, sample| {
-            let both = self.segments.get(number).zip(firsts.get(number));
-            both.is_some_and(|(segment, first)| keep(first + segment.part_of(sample)))
-        })
+    /// Keeps the parts that `keep` accepts by the index of their unjoined segment, plus the first sample of
+    /// every kept segment, because its start state applies there. Segments without an accepted part are left
+    /// out. Also returns the indices of the kept segments.
+    pub(crate) fn masked(&self, keep: &dyn Fn(usize) -> bool) -> (Self, Vec<usize>) {
+        let mut segments = Vec::new();
+        let mut numbers = Vec::new();
+        for (number, (segment, first)) in self.segments.iter().zip(self.firsts()).enumerate() {
+            if (0..segment.parts.len()).any(|part| keep(first + part)) {
+                segments.push(segment.keeping(|sample| keep(first + segment.part_of(sample))));
+                numbers.push(number);
+            }
+        }
+        (Self { segments, ..self.clone() }, numbers)
     }
 
-    /// Keeps the samples that `keep` accepts by the indices of segment and sample. Segments without an accepted
-    /// sample are left out. A segment begins with its first kept sample: in a strongly damped motion, later
-    /// samples would not determine an earlier start state. Also returns where each kept segment begins.
-    pub(crate) fn keeping(&self, keep: impl Fn(usize, usize) -> bool) -> (Self, Vec<Origin>) {
-        let of = |(number, segment): (usize, &Segment)| {
-            let (segment, sample) = segment.keeping(|sample| keep(number, sample))?;
-            Some((segment, Origin { segment: number, sample }))
-        };
-        let (segments, origins) = self.segments.iter().enumerate().filter_map(of).unzip();
-        (Self { segments, ..self.clone() }, origins)
+    /// Keeps the samples that `keep` accepts by the indices of segment and sample, plus the first sample of
+    /// every segment, because its start state applies there.
+    pub(crate) fn keeping(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
+        let of = |(number, own): (usize, &Segment)| own.keeping(|sample| keep(number, sample));
+        Self { segments: self.segments.iter().enumerate().map(of).collect(), ..self.clone() }
     }
 
     /// Splits residuals on this shooting interval into those of the unjoined segments.
@@ -106,17 +99,11 @@ impl Data {
 }
 
 impl Segment {
-    /// Keeps the samples that `keep` accepts. Also returns the index of the first of them; `None` if there is
-    /// none.
-    fn keeping(&self, keep: impl Fn(usize) -> bool) -> Option<(Self, usize)> {
-        let kept: Vec<usize> = (0..self.times.len()).filter(|&sample| keep(sample)).collect();
-        let origin = *kept.first()?;
+    /// Keeps the samples that `keep` accepts, and always the first one.
+    fn keeping(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.times.len()).filter(|&sample| sample == 0 || keep(sample)).collect();
         let pick = |values: &[f64]| kept.iter().filter_map(|&at| values.get(at).copied()).collect();
-        let (times, values) = (pick(&self.times), pick(&self.values));
-        Some((
-            Self { times, values, parts: vec![0], first: self.first && origin == 0, ..self.clone() },
-            origin,
-        ))
+        Self { times: pick(&self.times), values: pick(&self.values), parts: vec![0], ..self.clone() }
     }
 
     fn part_of(&self, sample: usize) -> usize {
@@ -293,7 +280,7 @@ impl ShootingInterval {
 
 #[cfg(test)]
 mod tests {
-    use super::{Origin, ShootingInterval, shortened};
+    use super::{ShootingInterval, shortened};
     use crate::data::observations::Observations;
     use crate::data::segments::{Data, cut};
     use crate::fit::calibrate::baseline;
@@ -348,18 +335,17 @@ mod tests {
     }
 
     #[test]
-    fn a_mask_leaves_the_parts_named_and_begins_with_them() {
+    fn a_mask_leaves_the_parts_named_and_the_first_sample() {
         let data = data(&observed(&[]));
         let whole = data.joined(data.segments.len());
-        let (odd, origins) = whole.masked(&|part| part % 2 == 1);
-        let first = data.segments[0].times.len();
-        assert_eq!(origins, [Origin { segment: 0, sample: first }]);
+        let (odd, numbers) = whole.masked(&|part| part % 2 == 1);
+        assert_eq!(numbers, [0]);
         let expected: usize = data.segments.iter().skip(1).step_by(2).map(|s| s.times.len()).sum();
-        assert_eq!(odd.samples(), expected);
-        assert_eq!(odd.segments[0].times[0], data.segments[1].times[0]);
-        assert!(whole.segments[0].first && !odd.segments[0].first);
-        let (none, origins) = data.masked(&|_| false);
-        assert!(none.segments.is_empty() && origins.is_empty());
+        assert_eq!(odd.samples(), expected + 1);
+        assert_eq!(odd.segments[0].times[0], data.segments[0].times[0]);
+        assert_eq!(odd.segments[0].times[1], data.segments[1].times[0]);
+        let (none, numbers) = data.masked(&|_| false);
+        assert!(none.segments.is_empty() && numbers.is_empty());
     }
 
     /// Without a missing effect the whole record follows from one start state, and the states along it fit

@@ -1,11 +1,9 @@
 //! Held-out prediction: residuals of a hypothesis on parts of the records that it was not fitted to.
 
 use crate::data::segments::{Data, Segment};
-use crate::data::shooting_interval::Origin;
-use crate::fit::fitted::{Fit, Point, extended};
+use crate::fit::fitted::{Fit, Point};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
-use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::DynamicsError;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -54,32 +52,19 @@ pub(crate) struct Both<'a> {
 }
 
 impl Both<'_> {
-    /// Returns the coefficients fitted to a part of the data, from the followed motion on. With
-    /// [`Moving::Starts`] these are the followed ones.
+    /// Returns the coefficients fitted to a part of the data whose segments have the given numbers, from the
+    /// followed fit on. With [`Moving::Starts`] these are the followed ones.
     fn learned(
         &self,
-        (mut part, origins): (Data, Vec<Origin>),
+        (part, numbers): (Data, Vec<usize>),
         moving: Moving,
     ) -> Result<Vec<f64>, DynamicsError> {
         let Fit { hypothesis, point, .. } = self.followed;
         if moving == Moving::Starts {
             return Ok(point.globals.clone());
         }
-        let mut simulator = Simulator::new(self.longer, hypothesis, &point.globals, Derivatives::None)?;
-        let mut starts = Vec::with_capacity(origins.len());
-        for (own, origin) in part.segments.iter_mut().zip(&origins) {
-            let known = self.longer.segments.get(origin.segment).zip(point.starts.get(origin.segment));
-            let Some((segment, start)) = known else { continue };
-            if origin.sample == 0 {
-                starts.push(start.clone());
-                continue;
-            }
-            let motion = simulator.motion(segment, start)?;
-            let state = motion.position.get(origin.sample).zip(motion.velocity.get(origin.sample));
-            own.guess = state.map_or(own.guess, |(position, velocity)| [*position, *velocity]);
-            starts.push(extended(&own.guess, hypothesis));
-        }
-        let point = Point { globals: point.globals.clone(), starts };
+        let starts = numbers.iter().filter_map(|&number| point.starts.get(number).cloned());
+        let point = Point { globals: point.globals.clone(), starts: starts.collect() };
         Ok(fit(&part, hypothesis, point, moving, Stopping::HELD_OUT)?.point.globals)
     }
 
@@ -119,7 +104,8 @@ impl Both<'_> {
             .into_par_iter()
             .map(|turn| {
                 let train = self.longer.keeping(|segment, sample| turn_of(segment, sample) != Some(&turn));
-                let globals = self.learned(train, moving)?;
+                let numbers = (0..train.segments.len()).collect();
+                let globals = self.learned((train, numbers), moving)?;
                 let Fit { hypothesis, point, .. } = self.followed;
                 let point = Point { globals, starts: point.starts.clone() };
                 let all = fit(self.longer, hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?;

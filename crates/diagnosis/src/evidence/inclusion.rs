@@ -145,13 +145,15 @@ impl<'a> Inclusion<'a> {
         rows
     }
 
-    /// Returns `true` if the error of the best set with a class is that of the best set without it, to three
+    /// Returns `true` if the best set with a class leaves the same error without the members of that class, to three
     /// digits.
     fn changes_nothing(&self, class: EvidenceClass) -> bool {
-        let best = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().map(|w| w.fit).find(|fit| has(fit));
-        let with = best(&|fit| fit.hypothesis.holds(class));
-        let without = best(&|fit| fit.hypothesis.lacks(class));
-        with.zip(without).is_some_and(|(with, without)| without.squares < UNCHANGED * with.squares)
+        let all = || self.sets.weighed.iter().map(|w| w.fit);
+        let Some(with) = all().find(|fit| fit.hypothesis.holds(class)) else { return false };
+        let is_other = |own: &&Candidate| own.evidence_class() != class;
+        let others: Vec<Candidate> = with.hypothesis.candidates.iter().filter(is_other).copied().collect();
+        let mut without = all().filter(|fit| fit.hypothesis.candidates == others);
+        without.any(|without| without.squares < UNCHANGED * with.squares)
     }
 
     /// Returns the probability that at least one of two classes acts, if they can replace each other: of the

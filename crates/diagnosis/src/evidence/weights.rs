@@ -127,7 +127,7 @@ pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
 /// (`experiments/rigs`, seed 1) flexible effects that gained 20 to 50 nats were there in 13 % of the cases,
 /// and plain laws that gained as much in 54 %: a small unlisted law leaves room for a flexible effect. With
 /// this price, evidence means the same for both.
-const FLEXIBLE: f64 = 30.0;
+const FLEXIBLE: f64 = 45.0;
 
 /// Price in nats of every shape parameter of an effect: odds of twenty to one, so that a law counts as the
 /// special case of another unless the data say otherwise.
