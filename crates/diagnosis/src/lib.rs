@@ -5,15 +5,33 @@
 //! values, input) and the nominal simulator. It has no access to the source of a record. [`diagnose`] returns
 //! a [`Diagnosis`].
 //!
-//! # Method
-//! 1. Records are cut into segments of about six periods, each with its own start state (`data`).
-//! 2. The nominal simulator is fitted as it is, and recalibrated (`fit`).
-//! 3. The first-order effect of every candidate on the observed values, at many shapes, is projected on what
-//!    calibration and start states cannot imitate (`model`). The largest gain by chance is estimated from
-//!    random draws (`search::null`).
-//! 4. Sets of a few candidates are searched and fitted in full (`search`), scored by tempered evidence, and
-//!    tested on held-out segments. A free latent torque shows what is left without a name (`evidence`).
-//! 5. Shares, maps, rivals and the next experiment follow (`explain`).
+//! # How an answer comes about
+//! 1. **Measurement chain** (`measurement`, `noise`): the believed clock, outliers, the sensor's step, the noise
+//!    floor from second differences. Findings that stamps and values show directly are stated as they are.
+//! 2. **Segments** (`data`): records are cut into about six periods each, every segment with a start state of its
+//!    own, so that a fit cannot lose count of the swings.
+//! 3. **Calibration** (`fit`): the nominal simulator is fitted as it is (start states only), then with its
+//!    coefficients free. What that leaves is the gap to be explained.
+//! 4. **Proposals** (`search`): a Kalman smoother gives the motion without any law (`data::smoothed`), and the weak
+//!    form of the equation of motion proposes sets of laws along it, each law at a dense grid of shapes
+//!    (`search::weak_form`). To first order, every candidate's effect on the readings, projected on what
+//!    calibration and start states cannot imitate, proposes further ones (`model::dictionary`). Nothing is decided
+//!    on a proposal.
+//! 5. **Search** (`search::beam`): proposed sets are fitted in full, from pieces of one or two periods up to the
+//!    segments. The best set of each size is extended, its members are replaced, generalized and simplified. The
+//!    search goes on while the best set leaves more than 1.3 times the noise, and is repeated on joined segments as
+//!    long as the sets follow the motion there.
+//! 6. **Weights** (`evidence::weights`, `evidence::likelihood`): the log evidence of a set is the gain in
+//!    likelihood of its residuals, by segments and bands, where a residual that persists counts once; minus the
+//!    price of its parameters, and of its effects by the size of the vocabulary, their shapes and their flexibility.
+//! 7. **Classes** (`evidence::inclusion`): the evidence for a class is that of the best set with it minus that of the
+//!    best set without it, in which everything else may take its place. Together with the second witness (half
+//!    swings) and the ratio of the held-out errors it becomes a probability whose meaning was learned from simulated
+//!    rigs (`evidence::probability`).
+//! 8. **Held-out error** (`evidence::held_out`): blocks of every segment take turns at being left out of the fit of
+//!    the coefficients. What no set explains shows as a free torque, a line or a band of the residual
+//!    (`evidence::left_over`), and decides between `none`, `calibration` and `unknown`.
+//! 9. **Explanation** (`explain`): shares, maps, rivals, the repaired simulator and the next experiment.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
