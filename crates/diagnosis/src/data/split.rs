@@ -28,6 +28,7 @@ impl Data {
             let begin: Vec<usize> = (0..count).map(|piece| piece * segment.times.len() / count).collect();
             let ends = begin.iter().skip(1).copied().chain([segment.times.len()]);
             for (from, to) in begin.iter().copied().zip(ends) {
+                // A piece is a range of its segment.
                 let pick = |list: &[f64]| list.get(from..to).map(<[f64]>::to_vec).unwrap_or_default();
                 let (times, values) = (pick(&segment.times), pick(&segment.values));
                 let first = segment.first && from == 0;

@@ -198,7 +198,7 @@ fn leaves_more(data: &Data, set: &Fit) -> bool {
 /// best ones follow, up to `depth` of each size.
 fn bases(ranked: &[&Fit], expanded: &mut BTreeSet<Vec<usize>>, depth: usize) -> Vec<Fit> {
     let size = |fit: &Fit| fit.hypothesis.counted().count();
-    let largest = ranked.iter().map(|fit| size(fit)).max().unwrap_or(0);
+    let Some(largest) = ranked.iter().map(|fit| size(fit)).max() else { return Vec::new() };
     for place in 0..depth {
         let of_size = |wanted: usize| ranked.iter().filter(move |fit| size(fit) == wanted).nth(place);
         let chosen = (1..=largest).filter_map(of_size).filter(|fit| expanded.insert(fit.hypothesis.ranks()));

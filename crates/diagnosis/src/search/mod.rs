@@ -4,6 +4,7 @@ pub(crate) mod alternatives;
 pub(crate) mod archive;
 pub(crate) mod asked;
 pub(crate) mod beam;
+pub(crate) mod bump;
 pub(crate) mod from_afar;
 pub(crate) mod gains;
 pub(crate) mod nameless;
