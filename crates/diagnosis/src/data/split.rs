@@ -15,7 +15,7 @@ impl Data {
     /// the segment.
     pub(crate) fn splits(&self) -> u32 {
         let most = self.segments.iter().map(|segment| self.pieces(segment)).max().unwrap_or(1);
-        most.ilog(RATIO) + u32::from(most > RATIO.pow(most.ilog(RATIO)))
+        most.ilog(RATIO)
     }
 
     /// Splits every segment into pieces, each with its own start state: into the shortest ones, joined `times`

@@ -30,7 +30,7 @@ fn mean_square(residuals: &[DVector<f64>], starts: usize) -> f64 {
     squares / freedom.max(1.0)
 }
 
-/// Fewest periods in a block. Not a multiple of a half, so that blocks fall on different sides of the swing.
+/// Periods in a block. Not a multiple of a half, so that blocks fall on different sides of the swing.
 const BLOCK: f64 = 0.75;
 
 /// Number of turns in which blocks are held out.

@@ -36,7 +36,7 @@ const LEFT: f64 = 1.3;
 const DEPTH: usize = 3;
 const MOST_ROUNDS: usize = 16;
 
-/// Distance in score from the best beyond which a set is not expanded.
+/// Distance in score from the best beyond which a set is not fitted to its end.
 const FAR_BEHIND: f64 = 30.0;
 
 /// Proposes additions at a fit. `best` marks the best set.
@@ -114,7 +114,7 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
     tried.extend(waiting.iter().map(|proposal| proposal.hypothesis.ranks()));
     let time = pool.autocorrelation_time();
     let best = pool.highest(time);
-    // A set that would end too far behind to be expanded need not be fitted to its end.
+    // A set that would end too far behind need not be fitted to its end.
     let of_use = |proposal: &Proposal| {
         squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
     };

@@ -41,20 +41,22 @@ impl CandidateLaw for EndStop {
     }
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
-        let span = facts.highest - facts.lowest;
-        let upper = STOPS.iter().map(|part| facts.highest - part * span);
-        let lower = STOPS.iter().map(|part| facts.lowest + part * span);
-        upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
+        at(&STOPS, facts)
     }
 
     fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
-        let span = facts.highest - facts.lowest;
-        let upper = FAR_STOPS.iter().map(|part| facts.highest - part * span);
-        let lower = FAR_STOPS.iter().map(|part| facts.lowest + part * span);
-        upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
+        at(&FAR_STOPS, facts)
     }
 
     fn linear_places(&self) -> &'static [usize] {
         &[1]
     }
+}
+
+/// Returns the shapes of stops at both ends, at distances from there relative to the swing's span.
+fn at(parts: &[f64], facts: &Scales) -> Vec<Vec<f64>> {
+    let span = facts.highest - facts.lowest;
+    let upper = parts.iter().map(|part| facts.highest - part * span);
+    let lower = parts.iter().map(|part| facts.lowest + part * span);
+    upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
 }
