@@ -24,19 +24,18 @@ const LOWEST_CLOSURE: f64 = -1.0;
 /// Interval of the closure if the gap cannot be told from none.
 const ANY_CLOSURE: [f64; 2] = [LOWEST_CLOSURE, 1.0];
 
-/// Sums of squares by segment and block, scaled as those of a variance: the degrees of freedom that the
-/// fitted start states have taken are put back.
+/// Sums of squares by segment and block.
 type Squares = Vec<Vec<f64>>;
 
-fn by_block(squares: &[f64], scale: f64) -> Vec<f64> {
+fn by_block(squares: &[f64]) -> Vec<f64> {
     let size = squares.len().div_ceil(BLOCKS).max(1);
-    squares.chunks(size).map(|block| scale * block.iter().sum::<f64>()).collect()
+    squares.chunks(size).map(|block| block.iter().sum()).collect()
 }
 
 fn held_out(held: &HeldOut) -> Squares {
     let own = |e: &DVector<f64>| {
         let squares: Vec<f64> = e.iter().map(|e| e * e).collect();
-        by_block(&squares, 1.0)
+        by_block(&squares)
     };
     held.residuals.iter().map(own).collect()
 }
@@ -52,7 +51,7 @@ fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
         let filled: Vec<f64> =
             // The mean stands for a sample without a difference.
             squares.iter().map(|square| mean + worth * square.map_or(0.0, |square| square - mean)).collect();
-        by_block(&filled, 1.0)
+        by_block(&filled)
     };
     squares.iter().map(own).collect()
 }
