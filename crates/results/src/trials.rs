@@ -458,6 +458,9 @@ pub struct TrialCaseRow {
     pub closure_high: Option<f64>,
     /// Closure of the repaired simulator on the clean motion.
     pub true_closure: Option<f64>,
+    /// Held-out error over that of the set that is there, fitted from the truth (regret).
+    #[serde(default)]
+    pub regret: Option<f64>,
     /// Wall time of the diagnosis, in seconds.
     pub seconds: Option<f64>,
 }

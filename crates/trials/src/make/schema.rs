@@ -210,4 +210,8 @@ const GATE: &[Field] = &[
         "calibration_error",
         "Largest calibration error of the probabilities of classes, where several effects act.",
     ),
+    share(
+        "regret",
+        "Largest share of composite cases whose error is above 1.1 times that of the set that is there.",
+    ),
 ];

@@ -2,6 +2,7 @@
 
 use super::accuracy::{kind_right, range, within};
 use super::judgment::Judgment;
+use super::regret::missed;
 use super::statistics::{NO_NUMBER, proportion};
 use crate::effects::{SEPARABLE_OTHERWISE, find};
 use crate::hidden::{Asked, Bank};
@@ -113,6 +114,7 @@ pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
         share("both of a pair, size 25", AtLeast(0.80), &both(twenty_five)),
         share("both of a pair, size 100", AtLeast(0.93), &both(hundred)),
         share("kind of verdict, size 25", AtLeast(0.95), &kind_right(judged, twenty_five)),
+        share("regret above 1.1", AtMost(0.05), &missed(judged.iter())),
         error("calibration error of confidence, own banks", "own", 0.03),
         error("calibration error of confidence, stressed bank", "stressed", 0.05),
         row("area under the curve of unknown, size 25", "", AtLeast(0.95), of_area.0, of_area.1),

@@ -3,14 +3,15 @@
 use super::bars::{Side, row, share};
 use super::classes::{false_alarms, is_composite, leading_named, leading_sure, precision, recall, unknown};
 use super::judgment::Judgment;
+use super::regret::missed;
 use super::statistics::NO_NUMBER;
 use crate::make::SECTIONS;
 use results::{BarRow, Reliability, TrialsResult};
 use serde::Deserialize;
 use settings::{Document, Resolved, SettingsError};
 
-/// Limits of scores: the keys of a configuration's section `gate`, each from 0 to 1. `false_alarms` and
-/// `calibration_error` are upper limits, the others lower limits. Absent keys set no limit.
+/// Limits of scores: the keys of a configuration's section `gate`, each from 0 to 1. `false_alarms`,
+/// `calibration_error` and `regret` are upper limits, the others lower limits. Absent keys set no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub struct Gate {
     leading_named: Option<f64>,
@@ -20,6 +21,7 @@ pub struct Gate {
     unknown: Option<f64>,
     false_alarms: Option<f64>,
     calibration_error: Option<f64>,
+    regret: Option<f64>,
 }
 
 impl Gate {
@@ -51,6 +53,10 @@ impl Gate {
             let found = false_alarms(judged.iter());
             Some(share("gate: false alarms where nothing is missing", Side::AtMost(bar?), &found))
         };
+        let regret = |bar: Option<f64>| {
+            let found = missed(composite.iter().copied());
+            Some(share("gate: regret above 1.1", Side::AtMost(bar?), &found))
+        };
         [
             least("gate: leading class named", self.leading_named, leading_named(&composite)),
             least("gate: leading class at 0.9 or more", self.leading_sure, leading_sure(&composite)),
@@ -59,6 +65,7 @@ impl Gate {
             least("gate: `unknown` where nothing has a name", self.unknown, unknown(judged.iter())),
             alarms(self.false_alarms),
             error(self.calibration_error),
+            regret(self.regret),
         ]
         .into_iter()
         .flatten()

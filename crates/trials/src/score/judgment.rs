@@ -17,6 +17,9 @@ pub struct AnsweredCase {
     /// Closure of the answer's repaired simulator on the noise-free motion, from −1 to 1, or the reason why
     /// there is none; see [`true_closure`](crate::true_closure).
     pub true_closure: Result<f64, String>,
+    /// Held-out error, in the observed quantity's unit, of the set that is there, fitted from the truth; or the reason
+    /// why there is none. See [`with_the_truth`](crate::with_the_truth).
+    pub error_of_the_truth: Result<f64, String>,
     /// Command that diagnoses this case alone again.
     pub command: String,
 }
@@ -134,6 +137,12 @@ impl<'a> Judgment<'a> {
         let either = found.clone().any(|found| found);
         let both = !hidden.effects.is_empty() && found.all(|found| found);
         Self { case, said, named, right, top_1, class, both, either }
+    }
+
+    /// Returns the answer's held-out error over that of the set that is there, fitted from the truth.
+    pub(crate) fn regret(&self) -> Option<f64> {
+        let of_truth = self.case.error_of_the_truth.as_ref().ok()?;
+        Some(self.answer()?.gap.repaired / of_truth)
     }
 
     pub(crate) fn bank(&self) -> Bank {

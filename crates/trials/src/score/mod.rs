@@ -9,6 +9,7 @@ mod closure;
 mod gate;
 mod isotonic;
 mod judgment;
+mod regret;
 mod reliability;
 #[cfg(test)]
 pub(crate) mod sample;
@@ -20,6 +21,7 @@ mod unknown;
 pub use closure::true_closure;
 pub use gate::{Gate, misses_the_gate};
 pub use judgment::AnsweredCase;
+pub use regret::with_the_truth;
 
 pub(crate) use judgment::Judgment;
 pub(crate) use statistics::proportion;
@@ -200,6 +202,7 @@ fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
         closure: finite(closure.map(|closure| closure.value)),
         closure_low: finite(closure.map(|closure| closure.interval_95[0])),
         closure_high: finite(closure.map(|closure| closure.interval_95[1])),
+        regret: finite(judgment.regret()),
         true_closure: finite(judgment.case.true_closure.as_ref().ok().copied()),
         seconds: finite(answer.map(|answer| answer.seconds)),
     }

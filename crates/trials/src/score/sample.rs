@@ -76,6 +76,7 @@ pub(crate) fn case(bank: Bank, hidden: &[&str], answer: Result<DiagnosisResult, 
             made: String::new(),
         },
         answer,
+        error_of_the_truth: Err("no effect is hidden".to_owned()),
         true_closure: Err("the system cannot be said in the vocabulary".to_owned()),
         command: "trainer diagnose case-000".to_owned(),
     }

@@ -4,16 +4,19 @@
 use super::baselines::{DIAGNOSERS, Diagnoser};
 use super::each::each;
 use super::files::{FAILED, WITHOUT, answer_name, case_name, text, truth_name};
+use crate::commands::diagnose::GivenCase;
 use crate::diagnose;
 use crate::error::TrainerError;
 use crate::error::TrialsError;
 use crate::terminal::progress::Progress;
+use diagnosis::Settings;
+use dynamics::REGISTRY;
 use estimator::Cancel;
 use rayon::ThreadPool;
 use results::{DiagnosisResult, TrialsManifest, TrialsManifestLine};
 use runs::RunFolder;
 use std::collections::BTreeMap;
-use trials::{AnsweredCase, Baseline, Hidden, true_closure};
+use trials::{AnsweredCase, Baseline, Hidden, true_closure, with_the_truth};
 use truth::{Sealed, digest};
 
 /// Reads the reasons why cases have no answer, by case, as the diagnosis reported them; empty if there is no
@@ -84,22 +87,33 @@ fn one(
         .filter(|file| file.starts_with("record-"))
         .map(|file| folder.path().join(case_name(&line.group, &line.id, file)))
         .collect();
-    let (true_closure, named) = match diagnose::given(&records, &nominal) {
+    let (true_closure, error_of_the_truth, named) = match diagnose::given(&records, &nominal) {
         Ok(given) => {
             let closure = match &answer {
                 Ok(answer) => true_closure(&hidden, &given.nominal, answer),
                 Err(message) => Err(message.clone()),
             };
             let named = DIAGNOSERS.iter().map(|diagnoser| (diagnoser.names)(&given).map(str::to_owned));
-            (closure, named.collect())
+            (closure, error_of_the_truth(&hidden, &given), named.collect())
         }
         // A case whose input cannot be read has no answer either.
-        Err(error) => (Err(error.to_string()), Vec::new()),
+        Err(error) => (Err(error.to_string()), Err(error.to_string()), Vec::new()),
     };
     let without = line.group.strip_prefix(WITHOUT).map_or_else(String::new, |id| format!(" --without {id}"));
     let paths: Vec<String> = records.iter().map(|path| path.display().to_string()).collect();
     let command = format!("trainer diagnose {} --nominal {}{without}", paths.join(" "), nominal.display());
-    Ok((AnsweredCase { id: line.id.clone(), hidden, answer, true_closure, command }, named))
+    let id = line.id.clone();
+    Ok((AnsweredCase { id, hidden, answer, true_closure, error_of_the_truth, command }, named))
+}
+
+/// Returns the held-out error of the set that is there: the nominal simulator with the truth in it, recalibrated by a
+/// diagnosis that may name nothing.
+fn error_of_the_truth(hidden: &Hidden, given: &GivenCase) -> Result<f64, String> {
+    let simulator = with_the_truth(hidden, &(&given.nominal).into())?;
+    let without = REGISTRY.iter().map(|effect| effect.id().to_owned()).collect();
+    let settings = Settings { without, ..Settings::default() };
+    let found = diagnosis::diagnose(&given.observations, simulator, &settings, &|| 0.0);
+    found.map(|found| found.gap.recalibrated).map_err(|error| error.to_string())
 }
 
 /// Reads the answer to a case, or the reason why there is none.
