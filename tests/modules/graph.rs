@@ -45,23 +45,24 @@ impl Graph {
 
     /// Returns groups of modules that all reach each other, with names in alphabetical order.
     pub(super) fn circles(&self) -> Vec<Vec<String>> {
-        let edges: BTreeMap<&Name, BTreeSet<Name>> =
-            self.modules.keys().map(|module| (module, self.named_by(module))).collect();
-        let reached = |from: &Name| {
-            let (mut seen, mut open) = (BTreeSet::new(), vec![from.clone()]);
-            while let Some(next) = open.pop() {
-                open.extend(edges[&next].iter().filter(|other| seen.insert((*other).clone())).cloned());
-            }
-            seen
-        };
-        let reach: BTreeMap<&Name, BTreeSet<Name>> =
-            edges.keys().map(|module| (*module, reached(module))).collect();
-        let together = |one: &Name, other: &Name| reach[one].contains(other) && reach[other].contains(one);
-        let groups: BTreeSet<Vec<String>> = (self.modules.keys())
-            .filter(|module| reach[module].contains(*module))
-            .map(|one| self.modules.keys().filter(|other| together(one, other)).map(shown).collect())
-            .collect();
-        groups.into_iter().collect()
+        groups(&self.modules.keys().map(|module| (module.clone(), self.named_by(module))).collect())
+    }
+
+    /// Returns the same for the folders at the root of the crate: an edge means that a module of one names an item of
+    /// a module of another.
+    pub(super) fn folder_circles(&self) -> Vec<Vec<String>> {
+        let inner = |module: &&Name| module.len() > 1;
+        let folder = |module: &Name| module[..1].to_vec();
+        let folders: BTreeSet<Name> = self.modules.keys().filter(inner).map(folder).collect();
+        let mut edges: BTreeMap<Name, BTreeSet<Name>> =
+            folders.iter().map(|own| (own.clone(), BTreeSet::new())).collect();
+        for module in self.modules.keys().filter(|module| !module.is_empty()) {
+            let Some(named) = edges.get_mut(&folder(module)) else { continue };
+            let others = self.named_by(module).into_iter().filter(|other| !other.is_empty());
+            let others = others.map(|other| folder(&other)).filter(|other| *other != folder(module));
+            named.extend(others.filter(|other| folders.contains(other)));
+        }
+        groups(&edges)
     }
 
     /// Returns the modules that the code of one names, except itself.
@@ -102,6 +103,24 @@ impl Graph {
         let through = self.modules[&module].globs.iter().find(|glob| defines(glob));
         through.filter(|_| !defines(&module)).cloned().unwrap_or(module)
     }
+}
+
+/// Returns groups of nodes of a graph that all reach each other, with names in alphabetical order.
+fn groups(edges: &BTreeMap<Name, BTreeSet<Name>>) -> Vec<Vec<String>> {
+    let reached = |from: &Name| {
+        let (mut seen, mut open) = (BTreeSet::new(), vec![from.clone()]);
+        while let Some(next) = open.pop() {
+            open.extend(edges[&next].iter().filter(|other| seen.insert((*other).clone())).cloned());
+        }
+        seen
+    };
+    let reach: BTreeMap<&Name, BTreeSet<Name>> = edges.keys().map(|node| (node, reached(node))).collect();
+    let together = |one: &Name, other: &Name| reach[one].contains(other) && reach[other].contains(one);
+    let groups: BTreeSet<Vec<String>> = (edges.keys())
+        .filter(|node| reach[node].contains(*node))
+        .map(|one| edges.keys().filter(|other| together(one, other)).map(shown).collect())
+        .collect();
+    groups.into_iter().collect()
 }
 
 fn shown(name: &Name) -> String {

@@ -8,7 +8,7 @@ mod source;
 
 use crate::support::root;
 use graph::Graph;
-use known::LONG;
+use known::{LONG, TANGLED};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -34,6 +34,20 @@ fn modules_of_a_crate_form_no_circle() {
 }
 
 #[test]
+fn folders_of_a_crate_form_no_circle() {
+    let mut known: BTreeSet<&str> = TANGLED.iter().copied().collect();
+    let mut circles = Vec::new();
+    for (name, file) in &crates() {
+        let own = Graph::read(file).folder_circles();
+        if !own.is_empty() && !known.remove(name.as_str()) {
+            circles.extend(own.into_iter().map(|circle| format!("{name}: {}", circle.join(", "))));
+        }
+    }
+    assert!(circles.is_empty(), "folders that need each other:\n{}", circles.join("\n"));
+    assert!(known.is_empty(), "without a circle by now, so no longer to be listed: {known:?}");
+}
+
+#[test]
 fn functions_are_short_or_have_a_reason() {
     let mut reasons: BTreeSet<(String, String)> =
         LONG.iter().map(|(name, function, _)| ((*name).to_owned(), (*function).to_owned())).collect();
@@ -54,15 +68,20 @@ fn functions_are_short_or_have_a_reason() {
     assert!(reasons.is_empty(), "short by now, so no longer to be listed: {reasons:?}");
 }
 
-/// Writes a crate of some files and returns the cycles among its modules.
-fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+/// Writes a crate of some files.
+fn written(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
         let path = folder.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
     }
-    Graph::read(&folder.path().join("lib.rs")).circles()
+    folder
+}
+
+/// Returns the cycles among the modules of a crate of some files.
+fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+    Graph::read(&written(files).path().join("lib.rs")).circles()
 }
 
 #[test]
@@ -79,6 +98,23 @@ fn a_circle_is_seen_through_imports_paths_and_parents() {
         ("a/b.rs", "fn g() { super::f(); }"),
     ];
     assert_eq!(circles_of(&parent), [["a".to_owned(), "a::b".to_owned()]]);
+}
+
+#[test]
+fn a_circle_of_folders_is_seen_though_its_modules_form_none() {
+    let files = [
+        ("lib.rs", "mod a; mod b;"),
+        ("a/mod.rs", "mod one; mod two;"),
+        ("a/one.rs", "use crate::b::one::B;"),
+        ("a/two.rs", "struct A;"),
+        ("b/mod.rs", "mod one; mod two;"),
+        ("b/one.rs", "struct B;"),
+        ("b/two.rs", "use crate::a::two::A;"),
+    ];
+    let folder = written(&files);
+    let graph = Graph::read(&folder.path().join("lib.rs"));
+    assert!(graph.circles().is_empty());
+    assert_eq!(graph.folder_circles(), [["a", "b"]]);
 }
 
 #[test]

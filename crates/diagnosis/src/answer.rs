@@ -1,6 +1,6 @@
 //! Answer of a diagnosis, as plain data.
 
-use crate::noise::floor::NoiseFloor;
+use crate::residual::floor::NoiseFloor;
 use dynamics::{Active, Hold, Nominal};
 pub use results::VerdictStatus as Status;
 use serde::Serialize;

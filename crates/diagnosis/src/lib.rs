@@ -12,16 +12,16 @@
 //!    own, so that a fit cannot lose count of the swings.
 //! 3. **Calibration** (`fit`): the nominal simulator is fitted as it is (start states only), then with its
 //!    coefficients free. What that leaves is the gap to be explained.
-//! 4. **Proposals** (`search`): a Kalman smoother gives the motion without any law (`data::smoothed`), and the weak
+//! 4. **Proposals** (`search`): a Kalman smoother gives the motion without any law (`search::smoothed`), and the weak
 //!    form of the equation of motion proposes sets of laws along it, each law at a dense grid of shapes
 //!    (`search::weak_form`). To first order, every candidate's effect on the readings, projected on what
-//!    calibration and start states cannot imitate, proposes further ones (`model::dictionary`). Nothing is decided
+//!    calibration and start states cannot imitate, proposes further ones (`linear::dictionary`). Nothing is decided
 //!    on a proposal.
 //! 5. **Search** (`search::beam`): proposed sets are fitted in full, from pieces of one or two periods up to the
 //!    segments. The best set of each size is extended, its members are replaced, generalized and simplified. The
 //!    search goes on while the best set leaves more than 1.3 times the noise, and is repeated on joined segments as
 //!    long as the sets follow the motion there.
-//! 6. **Weights** (`evidence::weights`, `evidence::likelihood`): the log evidence of a set is the gain in
+//! 6. **Weights** (`sets::weights`, `sets::likelihood`): the log evidence of a set is the gain in
 //!    likelihood of its residuals, by segments and bands, where a residual that persists counts once; minus the
 //!    price of its parameters, and of its effects by the size of the vocabulary, their shapes and their flexibility.
 //! 7. **Classes** (`evidence::inclusion`): the evidence for a class is that of the best set with it minus that of the
@@ -44,13 +44,17 @@ mod explain;
 mod fit;
 #[cfg(test)]
 mod fixtures;
+mod linear;
+mod matrices;
 mod measurement;
 mod model;
 mod noise;
 #[cfg(test)]
 #[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod repaired_tests;
+mod residual;
 mod search;
+mod sets;
 mod settings;
 mod stages;
 #[cfg(test)]
@@ -65,10 +69,10 @@ pub use answer::{
 pub use data::observations::Observations;
 pub use diagnose::{diagnose, diagnose_watched};
 pub use error::DiagnosisError;
-pub use evidence::weights::DISTINCT_DISTANCE;
 pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};
 pub use explain::repaired::rounded;
 pub use explain::single_effect::single_effect;
 pub use model::vocabulary::{evidence_class, has_fitted_hidden_start, is_flexible};
-pub use noise::floor::NoiseFloor;
+pub use residual::floor::NoiseFloor;
+pub use sets::weights::DISTINCT_DISTANCE;
 pub use settings::Settings;

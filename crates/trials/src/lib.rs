@@ -16,6 +16,6 @@ mod score;
 pub use baseline::{Baseline, BaselineRecord, WEAK_FORM, WEAK_FORM_METHOD, most_common, weak_form};
 pub use hidden::{Bank, Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect, Unlisted};
 pub use make::{Case, TrialError, TrialPlan, trials_schema};
-pub use score::{AnsweredCase, Gate, Trials, case_rows, misses_a_bar, misses_the_gate, score, true_closure,
-    with_the_truth,
+pub use score::{
+    AnsweredCase, Gate, Trials, case_rows, misses_a_bar, misses_the_gate, score, true_closure, with_the_truth,
 };

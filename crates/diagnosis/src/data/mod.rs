@@ -1,13 +1,11 @@
 //! Records as the fits use them: observations, segments and the scales derived from them.
 
 pub(crate) mod checks;
-pub(crate) mod knots;
+pub(crate) mod joined;
 pub(crate) mod observations;
 pub(crate) mod period;
 pub(crate) mod pieces;
 pub(crate) mod release;
 pub(crate) mod scales;
 pub(crate) mod segments;
-pub(crate) mod shooting_interval;
-pub(crate) mod smoothed;
 pub(crate) mod split;

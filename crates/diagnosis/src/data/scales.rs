@@ -1,5 +1,6 @@
 //! Scales of the records, in which bounds and grids of parameters are stated.
 
+use crate::noise::periodogram::below_images;
 use std::f64::consts::{PI, TAU};
 
 /// Scales of the motion, computed from the records and the nominal simulator.
@@ -76,12 +77,6 @@ const FASTEST: f64 = 12.0;
 
 /// Largest wavenumber of a torque along the position, as radians of its wave per amplitude.
 const MOST_WAVES: f64 = 64.0;
-
-/// Returns the highest angular frequency at which samples `interval` seconds apart tell frequencies from
-/// their aliases: 0.8 of the Nyquist frequency, which leaves room for a line's width.
-pub(crate) fn below_images(interval: f64) -> f64 {
-    0.8 * std::f64::consts::PI / interval
-}
 
 impl Scales {
     /// Returns the highest angular frequency that is searched in samples `interval` seconds apart.

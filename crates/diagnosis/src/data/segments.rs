@@ -9,7 +9,7 @@ use crate::data::observations::Observations;
 use crate::data::pieces::{Piece, pieces};
 use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
-use crate::model::matrices::element;
+use crate::matrices::element;
 use crate::noise::periodogram::{dominant_frequency, share};
 use crate::noise::statistics::{median, quantile};
 use dynamics::{Hold, Input, NominalSimulator};

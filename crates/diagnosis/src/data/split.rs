@@ -50,7 +50,7 @@ impl Data {
 
 #[cfg(test)]
 mod tests {
-    use crate::evidence::score::calibrated_swing;
+    use crate::sets::score::calibrated_swing;
 
     /// Longer pieces begin where shorter ones do, and the longest ones are the segments.
     #[test]

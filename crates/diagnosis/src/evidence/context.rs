@@ -2,22 +2,22 @@
 
 use crate::answer::{Detectability, Interval, Rivalry};
 use crate::data::segments::Data;
-use crate::data::shooting_interval::shortened;
 use crate::error::DiagnosisError;
 use crate::evidence::held_out::{Both, HeldOut};
-use crate::evidence::weights::{OFF_BY_CHANCE, ratio, significant};
-use crate::explain::attribution::shapley;
+use crate::evidence::shapley::shapley;
 use crate::fit::calibrate::Baseline;
 use crate::fit::fitted::{Fit, Point};
 use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::significance::{OFF_BY_CHANCE, ratio, significant};
 use crate::fit::stopping::Stopping;
+use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::model::hypothesis::{Calibrated as Coefficient, Hypothesis};
-use crate::model::matrices::entry;
 use crate::noise::statistics::normal_above;
-use crate::search::archive::Archive;
 use crate::search::refine::without;
+use crate::sets::archive::Archive;
+use crate::sets::shooting_interval::shortened;
 use crate::settings::Settings;
 use rayon::prelude::*;
 

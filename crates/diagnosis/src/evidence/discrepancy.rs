@@ -7,10 +7,10 @@
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
-use crate::model::dictionary::{Acting, Smooth, columns_of};
-use crate::model::matrices::{ridged, solve};
-use crate::model::projection::{Projection, jacobians};
-use crate::model::tangent::{Path, matrix};
+use crate::linear::dictionary::{Acting, Smooth, columns_of};
+use crate::linear::projection::{Projection, jacobians};
+use crate::linear::tangent::{Path, matrix};
+use crate::matrices::{ridged, solve};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 

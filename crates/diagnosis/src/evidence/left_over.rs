@@ -12,17 +12,17 @@
 //! likelihood ratio of two Gaussian variances against a common one. So noise of any color counts for nothing
 //! if its spectrum is smooth over a few bands, and few samples give little evidence.
 
-use crate::data::scales::below_images;
 use crate::data::segments::{Data, PERIODS, Segment};
 use crate::evidence::discrepancy::basis;
 use crate::fit::fitted::Fit;
-use crate::model::dictionary::{Acting, columns_of};
-use crate::model::matrices::{element, entry};
-use crate::model::projection::Projection;
-use crate::model::tangent::{Path, matrix};
+use crate::linear::dictionary::{Acting, columns_of};
+use crate::linear::projection::Projection;
+use crate::linear::tangent::{Path, matrix};
+use crate::matrices::{element, entry};
 use crate::noise::high_pass::high_pass;
-use crate::noise::spectrum::steady;
+use crate::noise::periodogram::below_images;
 use crate::noise::statistics::mean;
+use crate::residual::spectrum::steady;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};

@@ -20,7 +20,7 @@
 //! lack only an unlisted law count a quarter, since few real systems are like them. The class of an unlisted
 //! law is left out, since it is neither present nor absent.
 //!
-//! Since then, the likelihood of sets has changed ([`crate::evidence::likelihood`]). Learned anew from the answers
+//! Since then, the likelihood of sets has changed ([`crate::sets::likelihood`]). Learned anew from the answers
 //! to 230 rigs (`short`, seeds 81001, 81002 hard and 81003 rough), every coefficient agrees with these within two
 //! standard errors, and these have a calibration error of 0.033 there (0.027 over rigs with several effects). Two
 //! further features had coefficients of zero within theirs: half swings that speak against a class, and whether

@@ -1,5 +1,5 @@
 //! Sets of effects weighed by the residuals of the samples that they were fitted to, on the same scale as in the
-//! search ([`crate::evidence::weights::Weighing`]).
+//! search ([`crate::sets::weights::Weighing`]).
 //!
 //! Held-out predictions give the error of a set, and no weight: the largest swing of a decay is always
 //! extrapolated when it is held out, so that they would reject a right law for coefficients that the smaller
@@ -8,11 +8,11 @@
 use crate::data::segments::Data;
 use crate::evidence::context::Predicted;
 use crate::evidence::held_out::HeldOut;
-use crate::evidence::likelihood::{BANDS, Likelihood};
-use crate::evidence::score::{further_starts, parameter_price};
-use crate::evidence::weights::{Weighed, price, share};
 use crate::fit::fitted::Fit;
-use crate::noise::floor;
+use crate::residual::floor;
+use crate::sets::likelihood::{BANDS, Likelihood};
+use crate::sets::score::{further_starts, parameter_price};
+use crate::sets::weights::{Weighed, price, share};
 use nalgebra::DVector;
 
 /// Records, and the simulator that sets are compared with.

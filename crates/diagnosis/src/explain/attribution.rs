@@ -1,39 +1,15 @@
 //! Gap budget: shares of the gap by cause, which add up to 1.
 
 use crate::answer::Budget;
-use crate::model::dictionary::Dictionary;
-use crate::model::matrices::{element, ridged, solve};
+use crate::evidence::shapley::shapley;
+use crate::linear::dictionary::Dictionary;
+use crate::matrices::{element, ridged, solve};
 use dynamics::Class;
 use nalgebra::DMatrix;
 
 /// Classes in the order of the budget.
 pub(crate) const CLASSES: [Class; 5] =
     [Class::Dissipative, Class::Conservative, Class::TimeDependent, Class::Sensor, Class::Clock];
-
-/// Computes the Shapley values of `count` players: the mean, over all orders in which they can join, of what
-/// each adds. `worth` maps a set, as bits, to its worth.
-///
-/// # Reference
-/// Shapley, in Contributions to the Theory of Games II, Princeton 1953, 307.
-pub(crate) fn shapley(count: usize, worth: &dyn Fn(usize) -> f64) -> Vec<f64> {
-    let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
-    let sets = 1_usize << count;
-    let worths: Vec<f64> = (0..sets).map(worth).collect();
-    (0..count)
-        .map(|player| {
-            (0..sets)
-                .filter(|set| set & (1 << player) == 0)
-                .map(|set| {
-                    let size = set.count_ones() as usize;
-                    let weight = factorial(size) * factorial(count - size - 1) / factorial(count);
-                    // Every set has a worth.
-                    let at = |set: usize| worths.get(set).copied().unwrap_or(0.0);
-                    weight * (at(set | (1 << player)) - at(set))
-                })
-                .sum()
-        })
-        .collect()
-}
 
 /// Returns the sum of squares that all columns of some classes would explain together, to first order.
 /// `classes` is a bit set over [`CLASSES`].

@@ -2,8 +2,8 @@
 
 use crate::answer::{Gap, Interval};
 use crate::evidence::held_out::HeldOut;
-use crate::noise::floor::NoiseFloor;
 use crate::noise::ratio::{Block, ratio_interval};
+use crate::residual::floor::NoiseFloor;
 use nalgebra::DVector;
 
 /// Held-out residuals of the three simulators, and of the free latent torque.

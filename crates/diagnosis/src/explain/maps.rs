@@ -2,7 +2,7 @@
 
 use crate::answer::Cell;
 use crate::data::segments::Data;
-use crate::model::tangent::Path;
+use crate::linear::tangent::Path;
 use crate::noise::statistics::chi_squared_above;
 use nalgebra::DVector;
 

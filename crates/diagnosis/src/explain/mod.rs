@@ -4,6 +4,7 @@
 pub(crate) mod attribution;
 pub(crate) mod backbone;
 pub(crate) mod coefficients;
+pub(crate) mod conclusion;
 pub(crate) mod gap;
 pub(crate) mod maps;
 pub(crate) mod next_experiment;

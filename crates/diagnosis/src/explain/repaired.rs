@@ -2,17 +2,17 @@
 
 use crate::answer::{Interval, RepairedSimulator, Undetermined};
 use crate::data::segments::Data;
-use crate::data::shooting_interval::ShootingInterval;
 use crate::error::DiagnosisError;
 use crate::evidence::determined::{reach, says_something};
-use crate::evidence::weights::{OFF_BY_CHANCE, significant};
 use crate::explain::coefficients::{around, interval, spread, variance};
 use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::significance::{OFF_BY_CHANCE, significant};
 use crate::fit::stopping::Stopping;
+use crate::matrices::{entry, set};
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated, Hypothesis};
-use crate::model::matrices::{entry, set};
+use crate::sets::shooting_interval::ShootingInterval;
 use dynamics::{Active, DynamicsError, Effect, Hold, Nominal, NominalSimulator};
 use nalgebra::DMatrix;
 

@@ -6,12 +6,12 @@ use crate::error::DiagnosisError;
 use crate::fit::calibrate::better_hold;
 use crate::fit::fitted::Fit;
 use crate::fit::stopping::Stopping;
+use crate::linear::dictionary::Dictionary;
 use crate::measurement::signatures as chain_statistics;
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::Dictionary;
-use crate::search::archive::vanished;
 use crate::search::gains::alone;
-use crate::search::proposals::fit_all;
+use crate::sets::archive::vanished;
+use crate::sets::proposals::fit_all;
 use dynamics::NominalSimulator;
 
 /// Returns the Bayesian information criterion of a fit: N·ln(SS/N) + p·ln N, for N samples with sum of

@@ -2,9 +2,9 @@
 
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
-use crate::evidence::weights::{OFF_BY_CHANCE, significant};
 use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::significance::{OFF_BY_CHANCE, significant};
 use crate::fit::stopping::Stopping;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Known};
 use dynamics::{Hold, Nominal, NominalSimulator};

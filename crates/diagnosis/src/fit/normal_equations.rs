@@ -3,8 +3,8 @@
 //! complement).
 
 use crate::fit::fitted::Point;
+use crate::matrices::{element, entry, raised, set, solve};
 use crate::model::candidate::Parameter;
-use crate::model::matrices::{element, entry, raised, set, solve};
 use crate::model::predictor::Prediction;
 use nalgebra::{DMatrix, DVector};
 

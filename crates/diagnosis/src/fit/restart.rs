@@ -9,8 +9,8 @@
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Point, extended};
 use crate::fit::stopping::SHORT;
+use crate::matrices::raised;
 use crate::model::hypothesis::Hypothesis;
-use crate::model::matrices::raised;
 use crate::model::predictor::{Derivatives, Prediction, Simulator};
 use crate::noise::statistics::{mean, median};
 use dynamics::DynamicsError;

@@ -3,11 +3,8 @@
 pub(crate) mod candidate;
 pub(crate) mod candidates;
 pub(crate) mod contact;
-pub(crate) mod dictionary;
+pub(crate) mod encoder_hysteresis;
 pub(crate) mod hypothesis;
-pub(crate) mod matrices;
 pub(crate) mod predictor;
-pub(crate) mod projection;
 pub(crate) mod sensor;
-pub(crate) mod tangent;
 pub(crate) mod vocabulary;

@@ -2,11 +2,11 @@
 
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
-use crate::measurement::encoder_hysteresis::readings;
+use crate::matrices::{entry, set};
 use crate::model::candidate::Candidate;
 use crate::model::contact::{Bent, bent};
+use crate::model::encoder_hysteresis::readings;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Source};
-use crate::model::matrices::{entry, set};
 use crate::model::sensor::{Observed, Sensor};
 use dynamics::DynamicsError;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};

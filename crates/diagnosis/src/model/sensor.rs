@@ -9,7 +9,7 @@ pub(crate) struct Sensor {
     pub(crate) clock: Option<f64>,
     /// Half of its range, and the center of the range.
     pub(crate) saturation: Option<(f64, f64)>,
-    /// Width by which readings lag behind in either direction: [`crate::measurement::encoder_hysteresis`]. It
+    /// Width by which readings lag behind in either direction: [`crate::model::encoder_hysteresis`]. It
     /// is not a map of a single value.
     pub(crate) reading: Option<f64>,
 }

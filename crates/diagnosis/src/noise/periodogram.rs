@@ -1,7 +1,12 @@
 //! Lines in values over time, at even or uneven times.
 
-use crate::data::scales::below_images;
 use crate::noise::statistics::mean;
+
+/// Returns the highest angular frequency at which samples `interval` seconds apart tell frequencies from
+/// their aliases: 0.8 of the Nyquist frequency, which leaves room for a line's width.
+pub(crate) fn below_images(interval: f64) -> f64 {
+    0.8 * std::f64::consts::PI / interval
+}
 
 /// Line and its gain.
 #[derive(Debug, Clone, Copy, PartialEq)]

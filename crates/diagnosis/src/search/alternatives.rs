@@ -6,16 +6,16 @@
 //! set with it minus that of the best set without it; each kind of the class is tried in its place too.
 
 use crate::data::segments::Data;
-use crate::evidence::weights::Weighing;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
+use crate::linear::dictionary::Dictionary;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
-use crate::model::dictionary::Dictionary;
-use crate::search::archive::Archive;
 use crate::search::gains::singles;
-use crate::search::proposals::{Proposal, additions, proposal, take_in};
+use crate::sets::archive::Archive;
+use crate::sets::proposals::{Proposal, additions, proposal, take_in};
+use crate::sets::weights::Weighing;
 use rayon::prelude::*;
 
 /// Largest number of effects added to the best set.

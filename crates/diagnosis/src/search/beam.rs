@@ -7,20 +7,20 @@
 //! a linearization.
 
 use crate::data::segments::Data;
-use crate::evidence::score::squares_at;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
+use crate::linear::dictionary::{Dictionary, Gain};
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::{Dictionary, Gain};
-use crate::search::archive::{Archive, is_another};
 use crate::search::asked::Asked;
 use crate::search::from_afar::from_afar;
 use crate::search::gains::{pairs, promising, singles, stands_alone, stands_out};
-use crate::search::proposals::{
+use crate::sets::archive::{Archive, is_another};
+use crate::sets::proposals::{
     Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, reshaped, simplified,
     take_in,
 };
+use crate::sets::score::squares_at;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 

@@ -5,14 +5,14 @@
 //! the smoothed motion, and goes on to pieces four times as long until they are the shooting interval.
 
 use crate::data::segments::{Data, Segment};
-use crate::evidence::score::score;
 use crate::fit::fitted::{Fit, Point, extended};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
-use crate::search::archive::{Archive, gone};
 use crate::search::asked::Asked;
-use crate::search::proposals::proposal;
 use crate::search::weak_form::Begun;
+use crate::sets::archive::{Archive, gone};
+use crate::sets::proposals::proposal;
+use crate::sets::score::score;
 use rayon::prelude::*;
 
 /// Number of sets that go on from the shortest pieces.

@@ -2,10 +2,10 @@
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
+use crate::linear::dictionary::{Dictionary, Gain};
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::{Dictionary, Gain};
-use crate::noise::spectrum::DECAYS;
-use crate::search::proposals::{Proposal, additions, proposal};
+use crate::residual::spectrum::DECAYS;
+use crate::sets::proposals::{Proposal, additions, proposal};
 
 /// Returns the gains of single entries, with the best shape of each candidate, largest first.
 pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {

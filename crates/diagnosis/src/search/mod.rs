@@ -1,7 +1,6 @@
 //! Search over sets of effects.
 
 pub(crate) mod alternatives;
-pub(crate) mod archive;
 pub(crate) mod asked;
 pub(crate) mod beam;
 pub(crate) mod bump;
@@ -10,7 +9,7 @@ pub(crate) mod gains;
 pub(crate) mod nameless;
 pub(crate) mod null;
 pub(crate) mod plain;
-pub(crate) mod proposals;
+pub(crate) mod position_torque;
 pub(crate) mod refine;
-pub(crate) mod second_mode;
+pub(crate) mod smoothed;
 pub(crate) mod weak_form;

@@ -8,13 +8,13 @@
 //! each size that consists of plain laws and effects of the measurement chain.
 
 use crate::data::segments::Data;
-use crate::evidence::weights::{EVEN, Weighed, Weighing};
-use crate::explain::position_torque::beside;
 use crate::fit::fitted::{Fit, Point};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
-use crate::search::archive::Archive;
+use crate::search::position_torque::beside;
+use crate::sets::archive::Archive;
+use crate::sets::weights::{EVEN, Weighed, Weighing};
 use rayon::prelude::*;
 
 /// Number of sets of plain laws beside which they are fitted.

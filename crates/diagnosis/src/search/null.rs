@@ -1,7 +1,7 @@
 //! Null distribution of the largest gain among many candidates.
 
-use crate::model::dictionary::Dictionary;
-use crate::model::matrices::{element, entry};
+use crate::linear::dictionary::Dictionary;
+use crate::matrices::{element, entry};
 use crate::noise::statistics::quantile;
 use crate::search::gains::singles;
 use nalgebra::{DMatrix, DVector};

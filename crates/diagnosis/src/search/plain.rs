@@ -7,11 +7,11 @@
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::fit::stopping::Stopping;
+use crate::linear::dictionary::Dictionary;
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::Dictionary;
-use crate::search::archive::Archive;
 use crate::search::gains::singles;
-use crate::search::proposals::{Proposal, additions, proposal, take_in};
+use crate::sets::archive::Archive;
+use crate::sets::proposals::{Proposal, additions, proposal, take_in};
 use rayon::prelude::*;
 
 /// Fits every set of the plain laws among the candidates, and admits those that keep all members to the

@@ -1,13 +1,13 @@
 //! Refit of the best sets on every sample, to convergence.
 
 use crate::data::segments::Data;
-use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
-use crate::search::archive::{Archive, vanished};
-use crate::search::proposals::{Proposal, generalized, left_over, proposal, take_in};
+use crate::sets::archive::{Archive, vanished};
+use crate::sets::proposals::{Proposal, generalized, left_over, proposal, take_in};
+use crate::sets::weights::{Weighed, best_if_nothing_is_left};
 use rayon::prelude::*;
 
 /// Number of sets refined in any case.

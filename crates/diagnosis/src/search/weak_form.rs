@@ -12,16 +12,16 @@
 
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
-use crate::data::smoothed::smoothed;
 use crate::fit::fitted::Fit;
+use crate::linear::dictionary::{Dictionary, Gain};
+use crate::matrices::solve;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::Along;
-use crate::model::dictionary::{Dictionary, Gain};
 use crate::model::hypothesis::{Calibrated, Hypothesis};
-use crate::model::matrices::solve;
 use crate::model::predictor::Motion;
-use crate::noise::floor;
+use crate::residual::floor;
 use crate::search::bump::bumps;
+use crate::search::smoothed::smoothed;
 use dynamics::{Coefficients, Input, Nominal};
 use nalgebra::DMatrix;
 use rayon::prelude::*;

@@ -3,13 +3,13 @@
 use super::{Measured, Refined, Request};
 use crate::answer::EffectClass;
 use crate::error::DiagnosisError;
-use crate::evidence::conclusion::likely;
 use crate::evidence::context::{Context, Held, Shift};
 use crate::evidence::half_swings::half_swings;
 use crate::evidence::inclusion::{Inclusion, asked};
 use crate::evidence::weighed_sets::Records;
-use crate::evidence::weights::Weighed;
+use crate::explain::conclusion::likely;
 use crate::fit::fitted::Fit;
+use crate::sets::weights::Weighed;
 use std::cell::OnceCell;
 
 /// Log evidence in nats by which the set of all likely classes may predict worse than the best set of some of
@@ -45,9 +45,8 @@ impl<'a> Judged<'a> {
         let inclusion =
             Inclusion::of(Records { data: &refined.data, segments, bare, vocabulary }, &predictions)?;
         let frequency = request.simulator.angular_frequency();
-        let swings = half_swings(request.records, &measured.free, frequency);
-        let witness = swings.as_ref().map(|own| &own.witness);
-        let classes = inclusion.classes(witness, &request.settings.seed);
+        let witness = half_swings(request.records, &measured.free, frequency);
+        let classes = inclusion.classes(witness.as_ref(), &request.settings.seed);
         let names = likely(&classes);
         let within = inclusion.within(&names);
         // If no set is within these classes, nothing is named.

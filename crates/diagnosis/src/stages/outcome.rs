@@ -2,23 +2,23 @@
 
 use super::{Judged, Measured, Refined, Remaining, Request};
 use crate::answer::{Budget, Cell, Diagnosis, MeasuringChain, Series, SetScore, Where};
-use crate::data::shooting_interval::ShootingInterval;
 use crate::error::DiagnosisError;
-use crate::evidence::conclusion::{self, Parts, probabilities, verdict};
 use crate::evidence::context::Context;
 use crate::evidence::held_out::HeldOut;
 use crate::explain::attribution::budget;
 use crate::explain::coefficients::{calibration, known};
+use crate::explain::conclusion::{self, Parts, probabilities, verdict};
 use crate::explain::gap::paired;
 use crate::explain::repaired::repaired as repaired_simulator;
 use crate::explain::{maps, next_experiment};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
+use crate::linear::dictionary::Dictionary;
+use crate::linear::tangent::Path;
 use crate::measurement::{chain, encoder_hysteresis};
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::Dictionary;
-use crate::model::tangent::Path;
+use crate::sets::shooting_interval::ShootingInterval;
 
 /// Results of all stages before.
 #[derive(Clone, Copy)]
@@ -160,7 +160,7 @@ impl All<'_> {
     }
 
     fn sets(&self) -> Vec<SetScore> {
-        let score = |w: &crate::evidence::weights::Weighed<'_>| SetScore {
+        let score = |w: &crate::sets::weights::Weighed<'_>| SetScore {
             effects: w.fit.hypothesis.ids(),
             probability: w.probability,
             rms: (w.fit.squares / w.fit.freedom()).sqrt(),

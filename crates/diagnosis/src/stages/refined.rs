@@ -2,21 +2,21 @@
 
 use super::{Question, Request, Searched};
 use crate::data::segments::Data;
-use crate::data::shooting_interval::ShootingInterval;
 use crate::error::DiagnosisError;
 use crate::evidence::context::{Context, Thin, Unjoined};
-use crate::evidence::weights::{Weighed, Weighing};
 use crate::fit::calibrate::Baseline;
 use crate::fit::fitted::Point;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::alternatives::alternatives;
-use crate::search::archive::Archive;
 use crate::search::asked::Asked;
 use crate::search::beam::search;
 use crate::search::nameless::nameless;
 use crate::search::refine::refine;
+use crate::sets::archive::Archive;
+use crate::sets::shooting_interval::ShootingInterval;
+use crate::sets::weights::{Weighed, Weighing};
 use dynamics::Hold;
 
 /// Results of all fits, on the unjoined segments and on the shooting interval that the best sets follow.

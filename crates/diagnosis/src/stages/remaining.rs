@@ -7,12 +7,12 @@ use crate::evidence::context::Context;
 use crate::evidence::discrepancy;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::weights::{acts, unknown};
 use crate::explain::gap::{Stages, gap};
 use crate::explain::position_torque::{Unnamed, unnamed};
 use crate::fit::fitted::Fit;
-use crate::model::tangent::Path;
-use crate::noise::floor;
+use crate::linear::tangent::Path;
+use crate::residual::floor;
+use crate::sets::weights::{acts, unknown};
 
 /// Error, relative to the white noise floor, above which a residual cannot be noise. First-order
 /// autoregressive noise stays below it up to a correlation of 0.84 from sample to sample.

@@ -2,18 +2,18 @@
 
 use super::{Question, Request};
 use crate::data::segments::Data;
-use crate::data::shooting_interval::{ShootingInterval, shortened};
-use crate::evidence::score::score;
-use crate::evidence::weights::price;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
-use crate::search::archive::Archive;
 use crate::search::asked::{Asked, Breadth};
 use crate::search::beam::{Explored, go_on, search};
 use crate::search::plain::plain_family;
-use crate::search::proposals::proposal;
+use crate::sets::archive::Archive;
+use crate::sets::proposals::proposal;
+use crate::sets::score::score;
+use crate::sets::shooting_interval::{ShootingInterval, shortened};
+use crate::sets::weights::price;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 

@@ -24,9 +24,8 @@ pub fn with_the_truth(hidden: &Hidden, nominal: &NominalSimulator) -> Result<Nom
     }
     let coefficients = hidden.records.first().map_or(*nominal.nominal(), |truth| *truth.system.nominal());
     let stated = nominal.nominal();
-    let oscillator: Nominal = stated
-        .with_coefficients(coefficients.coefficients())
-        .map_err(|error| error.to_string())?;
+    let oscillator: Nominal =
+        stated.with_coefficients(coefficients.coefficients()).map_err(|error| error.to_string())?;
     let mut effects = nominal.effects().to_vec();
     let known = effects.len();
     for effect in &hidden.effects {

@@ -1,5 +1,5 @@
-//! Half swings as independent evidence: amplitude, duration and center of every half swing over a whole
-//! record, and the log evidence that they give for laws of loss and of the restoring torque.
+//! Half swings as independent evidence: amplitude and duration of every half swing over a whole
+//! record, and the log evidence that they give for laws of loss.
 //!
 //! Segments with their own start states lose the change of the amplitude over the whole record; half swings
 //! keep it. Real disturbances affect the phase first and leave the amplitude quiet, so half swings are a
@@ -9,97 +9,51 @@
 mod averaging;
 mod regression;
 #[cfg(test)]
-#[allow(clippy::print_stdout, reason = "a table is read, not only checked")]
 mod tests;
 mod turning_points;
 
 use crate::data::observations::Observations;
-use crate::noise::statistics::{autocorrelation_time, median};
+use crate::noise::statistics::median;
 use averaging::Restoring;
 use dynamics::effects::{CoulombFriction, QuadraticDrag};
 use record::Quantity;
-pub(crate) use regression::Estimate;
-use regression::{Hypothesis, Increments, Prior, by_replacement, hypotheses};
+use regression::{Estimate, Hypothesis, Increments, Prior, by_replacement, hypotheses};
 use std::f64::consts::PI;
 use turning_points::{Turn, turning_points};
 
 /// Half swing: the motion from one turning point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct HalfSwing {
-    /// Index of the record that contains it, from 0.
-    pub(crate) record: usize,
+struct HalfSwing {
     /// Mean time of its two turning points, in seconds since the record's first sample.
-    pub(crate) time_s: f64,
-    /// Half the distance between its turning points, in the observed unit, with the standard error from the
-    /// noise.
-    pub(crate) amplitude: Estimate,
+    time_s: f64,
+    /// Half the distance between its turning points, in the observed unit.
+    amplitude: f64,
     /// Time between its turning points in seconds, with its standard error.
-    pub(crate) duration_s: Estimate,
-    /// Mean value of its turning points in the observed unit, with its standard error.
-    pub(crate) center: Estimate,
+    duration_s: Estimate,
 }
 
-/// Evidence from half swings for laws, in nats: the log evidence of the best combination with the law minus
-/// that of the best combination without it. `None` if the records cannot tell.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// Evidence from half swings for laws of loss, in nats: the log evidence of the best combination with the law minus
+/// that of the best combination without it.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Witness {
-    /// Number of half swings.
-    pub(crate) count: usize,
-    /// Effective number of independent amplitudes, from the autocorrelation of what the best law of loss
-    /// leaves of them.
-    pub(crate) effective: f64,
     /// Evidence for a loss that does not depend on the amplitude: dry friction.
     pub(crate) friction: Option<f64>,
     /// Evidence for a loss that grows with the square of the amplitude: quadratic drag.
     pub(crate) drag: Option<f64>,
-    /// Evidence for a loss in proportion to the amplitude: viscous damping.
-    pub(crate) viscous: Option<f64>,
-    /// Evidence for a duration that depends on even powers of the amplitude: cubic stiffness, gravity.
-    pub(crate) even_stiffness: Option<f64>,
-    /// Evidence for a duration that depends on time: a drifting stiffness or clock.
-    pub(crate) period_drift: Option<f64>,
-    /// Evidence for a center that depends on the square of the amplitude: asymmetric stiffness, a weight at
-    /// an angle.
-    pub(crate) asymmetric: Option<f64>,
-    /// Evidence for a center that depends on time: a drifting sensor or rest position.
-    pub(crate) center_drift: Option<f64>,
-    /// Evidence for a duration that grows toward small amplitudes: backlash, a dead zone.
-    pub(crate) play: Option<f64>,
-    /// Evidence for a duration that shrinks toward small amplitudes: friction that bends before it slides.
-    pub(crate) presliding: Option<f64>,
-    /// Amplitude that dry friction takes from half a swing, in the observed unit.
-    pub(crate) dry_loss: Estimate,
-    /// Share of the amplitude that viscous damping takes from half a swing.
-    pub(crate) viscous_loss: Estimate,
-    /// Share of the amplitude that quadratic drag takes from half a swing, per unit of amplitude.
-    pub(crate) quadratic_loss: Estimate,
-    /// Relative change of the duration from small amplitudes to the largest.
-    pub(crate) softening: Estimate,
-}
-
-/// Half swings of all records of one system, and the evidence from them.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct HalfSwings {
-    pub(crate) swings: Vec<HalfSwing>,
-    pub(crate) witness: Witness,
 }
 
 /// Fewest half swings from which evidence for laws is computed.
 const FEWEST: usize = 8;
 /// Largest relative change of the duration that the prior admits, over the amplitudes or over the record.
 const LARGEST_CHANGE: f64 = 0.5;
-/// Largest shift of the center that the prior admits, relative to the largest amplitude.
-const LARGEST_SHIFT: f64 = 0.5;
-
 /// Run of successive turning points of one record.
 struct Run {
-    record: usize,
     turns: Vec<Turn>,
     swings: Vec<HalfSwing>,
 }
 
-/// Finds the half swings of all freely swinging records of a system and computes their evidence for laws.
-/// Returns `None` if no record swings freely or fewer than two half swings stand out.
+/// Finds the half swings of all freely swinging records of a system and computes their evidence for laws of loss.
+/// Returns `None` if no record swings freely or fewer than [`FEWEST`] half swings stand out.
 ///
 /// `kept` marks the samples that are not outliers and belong to the free swing. `angular_frequency` in rad/s
 /// is the nominal simulator's; it is a hint that has to be right within a factor of two. Driven records and
@@ -108,66 +62,41 @@ pub(crate) fn half_swings(
     records: &[Observations],
     kept: &[Vec<bool>],
     angular_frequency: f64,
-) -> Option<HalfSwings> {
+) -> Option<Witness> {
     let mut runs = Vec::new();
-    for (number, (record, kept)) in records.iter().zip(kept).enumerate() {
+    for (record, kept) in records.iter().zip(kept) {
         if record.input.is_none() && record.quantity == Quantity::Position {
             let found = turning_points(record, kept, angular_frequency);
-            runs.extend(found.into_iter().map(|turns| Run {
-                record: number,
-                swings: swings(number, &turns),
-                turns,
-            }));
+            runs.extend(found.into_iter().map(|turns| Run { swings: swings(&turns), turns }));
         }
     }
     let swings: Vec<HalfSwing> = runs.iter().flat_map(|run| run.swings.iter().copied()).collect();
-    if swings.len() < 2 {
+    if swings.len() < FEWEST {
         return None;
     }
-    let witness = if swings.len() < FEWEST {
-        Witness { count: swings.len(), effective: swings.len() as f64, ..Witness::default() }
-    } else {
-        witness(&runs, &swings)
-    };
-    Some(HalfSwings { swings, witness })
-}
-
-fn swings(record: usize, turns: &[Turn]) -> Vec<HalfSwing> {
-    let pairs = turns.windows(2).filter_map(|pair| match pair {
-        [one, next] => Some((one, next)),
-        _ => None,
-    });
-    pairs
-        .map(|(one, next)| {
-            let error = 0.5 * (one.value_variance + next.value_variance).sqrt();
-            HalfSwing {
-                record,
-                time_s: 0.5 * (one.time_s + next.time_s),
-                amplitude: Estimate { value: 0.5 * (next.value - one.value).abs(), error },
-                duration_s: Estimate {
-                    value: next.time_s - one.time_s,
-                    error: (one.time_variance + next.time_variance).sqrt(),
-                },
-                center: Estimate { value: 0.5 * (next.value + one.value), error },
-            }
-        })
-        .collect()
-}
-
-fn witness(runs: &[Run], swings: &[HalfSwing]) -> Witness {
-    let mut witness = Witness { count: swings.len(), ..Witness::default() };
     // A loss lengthens the swing in second order, and the laws of loss are averaged over the swing that the
     // durations determine. So each is computed once with the other's result.
     let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
-    let lost = losses(runs, swings, &|_| Restoring::harmonic(PI / typical), &mut witness);
-    let durations = durations(runs, swings, &lost, &mut witness);
-    let lost = losses(runs, swings, &|swing| restoring(durations.as_ref(), swings, swing), &mut witness);
-    centers(runs, swings, &lost, &mut witness);
-    witness
+    let (_, lost) = losses(&runs, &swings, &|_| Restoring::harmonic(PI / typical));
+    let durations = durations(&runs, &swings, &lost);
+    Some(losses(&runs, &swings, &|swing| restoring(durations.as_ref(), &swings, swing)).0)
+}
+
+fn swings(turns: &[Turn]) -> Vec<HalfSwing> {
+    let pairs = turns.iter().zip(turns.iter().skip(1));
+    let swing = |(one, next): (&Turn, &Turn)| HalfSwing {
+        time_s: 0.5 * (one.time_s + next.time_s),
+        amplitude: 0.5 * (next.value - one.value).abs(),
+        duration_s: Estimate {
+            value: next.time_s - one.time_s,
+            error: (one.time_variance + next.time_variance).sqrt(),
+        },
+    };
+    pairs.map(swing).collect()
 }
 
 fn largest(swings: &[HalfSwing]) -> f64 {
-    swings.iter().map(|swing| swing.amplitude.value).fold(f64::MIN_POSITIVE, f64::max)
+    swings.iter().map(|swing| swing.amplitude).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 fn span(swings: &[HalfSwing]) -> f64 {
@@ -193,12 +122,7 @@ const LARGEST_LENGTHENING: f64 = 0.1;
 ///
 /// Inverse powers either lengthen the small swings (backlash) or shorten them (friction that bends before it
 /// slides), never both. A fourth power is admitted only with a second one.
-fn durations(
-    runs: &[Run],
-    swings: &[HalfSwing],
-    lost: &[Vec<f64>],
-    witness: &mut Witness,
-) -> Option<Hypothesis> {
+fn durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Option<Hypothesis> {
     let increments = of_durations(runs, swings, lost);
     let priors = of_terms(median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>()));
     let any = |acts: &[bool], terms: std::ops::Range<usize>| {
@@ -209,34 +133,23 @@ fn durations(
         (one(acts, SQUARE) || !one(acts, FOURTH)) && !(any(acts, PLAY) && any(acts, PRESLIDING))
     };
     let found = hypotheses(&increments, &priors, &allowed);
-    witness.even_stiffness = by_replacement(&found, &|acts| one(acts, SQUARE));
-    witness.period_drift = by_replacement(&found, &|acts| one(acts, TIME));
-    witness.play = by_replacement(&found, &|acts| any(acts, PLAY));
-    witness.presliding = by_replacement(&found, &|acts| any(acts, PRESLIDING));
-    let best = found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    // A term that the best law lacks has no coefficient.
-    let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
-    let base = of(CONSTANT).value;
-    let error = of(SQUARE).error.hypot(of(FOURTH).error) / base;
-    witness.softening = Estimate { value: (of(SQUARE).value + of(FOURTH).value) / base, error };
-    Some(best)
+    found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
 }
 
 /// Returns the durations of each run and the terms that explain them.
 fn of_durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Vec<Increments> {
     let (most, span) = (largest(swings), span(swings));
-    let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
+    let least = swings.iter().map(|swing| swing.amplitude).fold(most, f64::min);
     let power = |term: usize, swing: &HalfSwing| {
         // There is a power for every term.
         let power = POWERS.get(term).copied().unwrap_or_default();
-        let part = (swing.amplitude.value / if power < 0 { least } else { most }).powi(power);
+        let part = (swing.amplitude / if power < 0 { least } else { most }).powi(power);
         if PRESLIDING.contains(&term) { -part } else { part }
     };
     runs.iter()
         .zip(lost)
         .map(|(run, lost)| {
-            let shares =
-                run.swings.iter().zip(lost).map(|(swing, lost)| (lost / swing.amplitude.value).powi(2));
+            let shares = run.swings.iter().zip(lost).map(|(swing, lost)| (lost / swing.amplitude).powi(2));
             let each = |term: &dyn Fn(&HalfSwing) -> f64| run.swings.iter().map(term).collect::<Vec<f64>>();
             let powers = (0..TIME).map(|term| each(&|swing| power(term, swing)));
             let variances = each(&|swing| swing.duration_s.error.powi(2));
@@ -273,7 +186,7 @@ fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfS
     };
     let base = of(CONSTANT).max(f64::MIN_POSITIVE);
     let most = largest(swings);
-    let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
+    let least = swings.iter().map(|swing| swing.amplitude).fold(most, f64::min);
     let drifted = base + of(TIME) * swing.time_s / span(swings);
     Restoring::of_period(
         PI / drifted.max(0.5 * base),
@@ -281,44 +194,38 @@ fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfS
     )
 }
 
-/// Returns the increments of a quantity measured from both turning points (amplitude or center of a half
-/// swing) and those of its terms. Increments two places apart share an error.
-fn of_turns(run: &Run, measured: &dyn Fn(&HalfSwing) -> f64, terms: Vec<Vec<f64>>) -> Increments {
+/// Returns the increments of the amplitude and those of its terms. Increments two places apart share an error.
+fn of_amplitudes(run: &Run, terms: Vec<Vec<f64>>) -> Increments {
     let ends = run.turns.iter().zip(run.turns.iter().skip(2));
     let variances: Vec<f64> =
         ends.map(|(from, to)| 0.25 * (from.value_variance + to.value_variance)).collect();
     let shared = run.turns.iter().skip(2).map(|turn| -0.25 * turn.value_variance).collect();
-    let values: Vec<f64> = run.swings.iter().map(measured).collect();
-    Increments { values: steps(&values), terms, covariance: [variances, vec![0.0; run.swings.len()], shared] }
-}
-
-fn steps(values: &[f64]) -> Vec<f64> {
-    values.iter().zip(values.iter().skip(1)).map(|(one, next)| next - one).collect()
+    let amplitudes = run.swings.iter().map(|swing| swing.amplitude);
+    let values = amplitudes.clone().zip(amplitudes.skip(1)).map(|(one, next)| next - one).collect();
+    Increments { values, terms, covariance: [variances, vec![0.0; run.swings.len()], shared] }
 }
 
 /// Largest coefficient of a law that the prior admits, relative to the one that explains the whole loss.
 const ROOM: f64 = 1.5;
 
-/// Indices of the terms of the loss: dry, viscous, and with the square of the velocity. A cubic term and a
+/// Indices of the terms of the loss, beside a viscous one: dry, and with the square of the velocity. A cubic term and a
 /// viscous one that changes in time were tried too: each replaces true drag and friction more often than it
 /// prevents false ones.
 const DRY: usize = 0;
-const VISCOUS: usize = 1;
 const QUADRATIC: usize = 2;
 
 /// Regresses the loss of amplitude on the laws, each averaged over the swing that the durations determine.
-/// Returns the loss of each swing of each run under the best combination.
+/// Returns the evidence, and the loss of each swing of each run under the best combination.
 fn losses(
     runs: &[Run],
     swings: &[HalfSwing],
     restoring: &dyn Fn(&HalfSwing) -> Restoring,
-    witness: &mut Witness,
-) -> Vec<Vec<f64>> {
+) -> (Witness, Vec<Vec<f64>>) {
     let most = largest(swings);
     let omega = restoring(&HalfSwing { time_s: 0.0, ..HalfSwing::default() }).angular_frequency;
     // Units of the coefficients: the amplitude, and shares of it, lost in a harmonic half swing.
     let laws = |swing: &HalfSwing| {
-        let (restoring, a) = (restoring(swing), swing.amplitude.value);
+        let (restoring, a) = (restoring(swing), swing.amplitude);
         [
             restoring.loss::<CoulombFriction>(&[0.5 * omega * omega, 0.0, 0.0, 0.0], a),
             restoring.viscous(2.0 * omega / PI, a),
@@ -335,7 +242,7 @@ fn losses(
                 let own: Vec<f64> = lost.iter().filter_map(|laws| laws.get(law)).copied().collect();
                 own.iter().zip(own.iter().skip(1)).map(|(one, next)| -0.5 * (one + next)).collect()
             };
-            of_turns(run, &|swing| swing.amplitude.value, (0..=QUADRATIC).map(term).collect())
+            of_amplitudes(run, (0..=QUADRATIC).map(term).collect())
         })
         .collect();
     // The prior's bound: the coefficient at which one law explains the whole loss, times `ROOM`.
@@ -347,64 +254,15 @@ fn losses(
     let priors: Vec<Prior> = (0..=QUADRATIC).map(|term| Prior::UpTo(bound(term))).collect();
     let one = |acts: &[bool], term: usize| acts.get(term).is_some_and(|acts| *acts);
     let found = hypotheses(&increments, &priors, &|_| true);
-    witness.friction = by_replacement(&found, &|acts| one(acts, DRY));
-    witness.viscous = by_replacement(&found, &|acts| one(acts, VISCOUS));
-    witness.drag = by_replacement(&found, &|acts| one(acts, QUADRATIC));
-    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else {
-        return lost.iter().map(|run| vec![0.0; run.len()]).collect();
+    let witness = Witness {
+        friction: by_replacement(&found, &|acts| one(acts, DRY)),
+        drag: by_replacement(&found, &|acts| one(acts, QUADRATIC)),
     };
-    if let &[dry, viscous, quadratic] = best.coefficients.as_slice() {
-        (witness.dry_loss, witness.viscous_loss, witness.quadratic_loss) = (dry, viscous, quadratic);
-    }
-    witness.effective = effective(&increments, best);
+    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else {
+        return (witness, lost.iter().map(|run| vec![0.0; run.len()]).collect());
+    };
     let sum = |laws: &[f64; QUADRATIC + 1]| {
         laws.iter().zip(&best.coefficients).map(|(law, own)| law * own.value).sum::<f64>()
     };
-    lost.iter().map(|run| run.iter().map(sum).collect()).collect()
-}
-
-/// Returns the effective number of independent amplitudes, from the residuals of a combination.
-fn effective(increments: &[Increments], best: &Hypothesis) -> f64 {
-    let pieces: Vec<Vec<f64>> = increments
-        .iter()
-        .map(|run| {
-            let mut level = 0.0;
-            let mut levels = vec![0.0];
-            for (at, value) in run.values.iter().enumerate() {
-                let explained = run.terms.iter().zip(&best.coefficients);
-                level += value
-                    // A term has a value for every swing.
-                    - explained.map(|(term, c)| c.value * term.get(at).copied().unwrap_or(0.0)).sum::<f64>();
-                levels.push(level);
-            }
-            let mean = levels.iter().sum::<f64>() / levels.len() as f64;
-            levels.iter().map(|level| level - mean).collect()
-        })
-        .collect();
-    let count: usize = pieces.iter().map(Vec::len).sum();
-    let pieces: Vec<&[f64]> = pieces.iter().map(Vec::as_slice).collect();
-    count as f64 / autocorrelation_time(&pieces).max(2.0)
-}
-
-/// Regresses the centers on the square of the amplitude and on time. The mean of two turning points lies off
-/// the swing's center by half of the swing's loss, to alternating sides.
-fn centers(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>], witness: &mut Witness) {
-    let (most, span) = (largest(swings), span(swings));
-    let increments: Vec<Increments> = runs
-        .iter()
-        .zip(lost)
-        .map(|(run, lost)| {
-            let side = |at: usize| if at.is_multiple_of(2) { 1.0 } else { -1.0 };
-            let to_a_side: Vec<f64> = lost.iter().enumerate().map(|(at, lost)| side(at) * lost).collect();
-            let squares: Vec<f64> = run.swings.iter().map(|s| (s.amplitude.value / most).powi(2)).collect();
-            let times: Vec<f64> = run.swings.iter().map(|swing| swing.time_s / span).collect();
-            let terms = vec![steps(&to_a_side), steps(&squares), steps(&times)];
-            of_turns(run, &|swing| swing.center.value, terms)
-        })
-        .collect();
-    let within = Prior::Within(LARGEST_SHIFT * most);
-    let found = hypotheses(&increments, &[Prior::Always, within, within], &|_| true);
-    let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
-    witness.asymmetric = inclusion(1);
-    witness.center_drift = inclusion(2);
+    (witness, lost.iter().map(|run| run.iter().map(sum).collect()).collect())
 }

@@ -45,9 +45,6 @@ pub(crate) struct Hypothesis {
     pub(crate) acts: Vec<bool>,
     pub(crate) evidence: f64,
     pub(crate) coefficients: Vec<Estimate>,
-    /// Variance added by the discrepancy of a swing, relative to that of a measured increment, at the largest
-    /// evidence.
-    pub(crate) ratio: f64,
 }
 
 /// Exponents of the grid of ratios, in half powers of ten: the variance of the discrepancy over that of a
@@ -56,7 +53,6 @@ const RATIOS: std::ops::RangeInclusive<i32> = -12..=6;
 
 /// Inner products of the whitened increments at one ratio.
 struct Whitened {
-    ratio: f64,
     normal: DMatrix<f64>,
     right: DVector<f64>,
     squares: f64,
@@ -103,7 +99,6 @@ fn typical_variance(runs: &[Increments]) -> f64 {
 
 fn whiten(runs: &[Increments], terms: usize, ratio: f64, scale: f64) -> Option<Whitened> {
     let mut whitened = Whitened {
-        ratio,
         normal: DMatrix::zeros(terms, terms),
         right: DVector::zeros(terms),
         squares: 0.0,
@@ -185,11 +180,9 @@ impl Banded {
 
 fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<Hypothesis> {
     let places: Vec<usize> = acts.iter().enumerate().filter(|(_, acts)| **acts).map(|(at, _)| at).collect();
-    let fits: Vec<(f64, f64, Vec<Estimate>)> = whitened
-        .iter()
-        .filter_map(|one| evidence(one, priors, &places).map(|(log, own)| (log, one.ratio, own)))
-        .collect();
-    let (most, ratio, own) = fits.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let fits: Vec<(f64, Vec<Estimate>)> =
+        whitened.iter().filter_map(|one| evidence(one, priors, &places)).collect();
+    let (most, own) = fits.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let sum: f64 = fits.iter().map(|(log, ..)| (log - most).exp()).sum();
     let mut coefficients = vec![Estimate::default(); acts.len()];
     for (place, estimate) in places.iter().zip(own) {
@@ -201,7 +194,6 @@ fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<
         acts: acts.to_vec(),
         evidence: most + (sum / whitened.len() as f64).ln(),
         coefficients,
-        ratio: *ratio,
     })
 }
 

@@ -239,7 +239,7 @@ pub(crate) trait CandidateLaw: Sync {
     }
 
     /// Returns `true` if readings lag behind the motion by the effect's one parameter: see
-    /// [`crate::measurement::encoder_hysteresis`]. Default: `false`.
+    /// [`crate::model::encoder_hysteresis`]. Default: `false`.
     fn holds_readings(&self) -> bool {
         false
     }

@@ -2,14 +2,14 @@
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
+use crate::linear::projection::Projection;
+use crate::linear::second_mode::driven_modes;
+use crate::linear::tangent::{Path, matrix, stack};
+use crate::matrices::{element, entry, solve};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::{Lines, Mode};
-use crate::model::matrices::{element, entry, solve};
-use crate::model::projection::Projection;
-use crate::model::tangent::{Path, matrix, stack};
 use crate::noise::periodogram::Line;
-use crate::noise::spectrum::{decaying_lines, frequencies, lines};
-use crate::search::second_mode::driven_modes;
+use crate::residual::spectrum::{decaying_lines, frequencies, lines};
 use dynamics::{Coefficients, DynamicsError};
 use nalgebra::{DMatrix, DVector};
 use record::Quantity;

@@ -6,10 +6,10 @@ use crate::data::segments::Data;
 use crate::fit::fitted::{Fit, Point, extended};
 use crate::fit::levenberg_marquardt::{Moving, fit, squares};
 use crate::fit::stopping::Stopping;
+use crate::linear::dictionary::{Dictionary, Gain};
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::{Dictionary, Gain};
 use crate::model::hypothesis::Hypothesis;
-use crate::search::archive::{Archive, gone};
+use crate::sets::archive::{Archive, gone};
 use rayon::prelude::*;
 
 /// Share of its linearized strength with which an effect begins a fit.
@@ -221,7 +221,6 @@ pub(crate) fn take_in(data: &Data, archive: &mut Archive, proposals: Vec<Proposa
 mod tests {
     use super::{Proposal, begins_closer, left_over, proposal, simplified};
     use crate::data::segments::Data;
-    use crate::evidence::score::calibrated_swing;
     use crate::fit::fitted::{Fit, Point};
     use crate::fit::levenberg_marquardt::{Moving, fit, squares};
     use crate::fit::stopping::Stopping;
@@ -229,7 +228,8 @@ mod tests {
     use crate::model::candidates::coulomb_friction::CoulombFriction;
     use crate::model::candidates::hysteresis::Hysteresis;
     use crate::model::candidates::quadratic_drag::QuadraticDrag;
-    use crate::search::archive::Archive;
+    use crate::sets::archive::Archive;
+    use crate::sets::score::calibrated_swing;
     const COULOMB: Candidate = Candidate::new(&CoulombFriction);
     const DRAG: Candidate = Candidate::new(&QuadraticDrag);
     const HYSTERESIS: Candidate = Candidate::new(&Hysteresis);

@@ -1,12 +1,11 @@
 //! Weights of sets: from log evidence to probabilities, and the prices of effects.
 
 use crate::data::segments::Data;
-use crate::evidence::likelihood::Likelihood;
-use crate::evidence::score::{further_starts, parameter_price};
 use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
-use crate::noise::statistics::chi_squared_above;
-use crate::search::archive::Archive;
+use crate::sets::archive::Archive;
+use crate::sets::likelihood::Likelihood;
+use crate::sets::score::{further_starts, parameter_price};
 use rayon::prelude::*;
 
 /// Share of the recalibrated simulator's gap without a name at which the verdict `unknown` is as likely as
@@ -66,12 +65,6 @@ where
     best
 }
 
-/// Returns the tempered log likelihood ratio of a fit over another on the same data. `time` is the
-/// autocorrelation time in samples.
-pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
-    other.nats_behind(fit.squares, time)
-}
-
 /// Common basis for weighing sets of effects on the same samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighing<'a> {
@@ -88,7 +81,7 @@ impl<'a> Weighing<'a> {
     pub(crate) fn of(data: &'a Data, calibrated: &'a Fit, archive: &Archive, vocabulary: usize) -> Self {
         let closest = archive.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
         let closest = &closest.unwrap_or(calibrated).residuals;
-        let noise = crate::noise::floor::floor(data, closest).value;
+        let noise = crate::residual::floor::floor(data, closest).value;
         let likelihood = Likelihood::of(data, &data.by_part(closest), noise);
         let bare = likelihood.log(&data.by_part(&calibrated.residuals));
         Self { data, calibrated, likelihood, bare, vocabulary }
@@ -159,15 +152,6 @@ pub(crate) fn acts(evidence: f64) -> f64 {
 pub(crate) fn unknown(acts: f64, share: f64) -> f64 {
     let odds = (share.max(0.0) / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
     acts * odds / (1.0 + odds)
-}
-
-/// Probability with which a correct calibration is called wrong.
-pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
-
-/// Returns `true` if `parameters` additional coefficients improve a fit by more than chance does with
-/// probability `chance`. `time` is the autocorrelation time in samples.
-pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usize, chance: f64) -> bool {
-    2.0 * ratio(better, worse, time) > chi_squared_above(parameters as f64, chance)
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Archive of the sets that a search has fitted.
 
 use crate::data::segments::Data;
-use crate::evidence::score::score;
 use crate::fit::fitted::{Fit, Point};
 use crate::model::candidate::{Candidate, MainMode};
 use crate::model::hypothesis::Hypothesis;
+use crate::sets::score::score;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
@@ -98,7 +98,7 @@ impl Archive {
         best.map_or(1.0, Fit::autocorrelation_time)
     }
 
-    /// Returns the fits by their score ([`crate::evidence::score::score`]) at an autocorrelation time, best
+    /// Returns the fits by their score ([`crate::sets::score::score`]) at an autocorrelation time, best
     /// first.
     pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
         let mut ranked: Vec<&Fit> = self.fits.iter().collect();
@@ -155,12 +155,12 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
 #[cfg(test)]
 mod tests {
     use super::Archive;
-    use crate::evidence::score::calibrated_swing;
     use crate::fit::fitted::Fit;
     use crate::model::candidate::Candidate;
     use crate::model::candidates::flexible_coupling::FlexibleCoupling;
     use crate::model::candidates::gravity::Gravity;
     use crate::model::candidates::quadratic_drag::QuadraticDrag;
+    use crate::sets::score::calibrated_swing;
 
     const GRAVITY: Candidate = Candidate::new(&Gravity);
     const SECOND_BODY: Candidate = Candidate::new(&FlexibleCoupling);

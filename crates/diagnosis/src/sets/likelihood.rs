@@ -17,8 +17,8 @@
 //! 425 (the discrepancy). Miller, Dunson, Journal of the American Statistical Association 114 (2019) 1113
 //! (why a likelihood that takes a left-over for noise is too certain).
 
-use crate::data::scales::below_images;
 use crate::data::segments::Data;
+use crate::noise::periodogram::below_images;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -161,8 +161,8 @@ impl Likelihood {
 #[cfg(test)]
 mod tests {
     use super::Likelihood;
-    use crate::evidence::score::calibrated_swing;
     use crate::fixtures::record;
+    use crate::sets::score::calibrated_swing;
     use crate::{Observations, Settings, diagnose};
     use dynamics::chain::{Chain, Observed};
     use dynamics::{Active, Nominal, System};

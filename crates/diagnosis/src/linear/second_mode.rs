@@ -6,10 +6,10 @@
 //! line. A record that is driven throughout shows it wherever the input has power, and not as a line.
 
 use crate::data::segments::Data;
+use crate::linear::projection::Projection;
+use crate::linear::tangent::{Path, Step, matrix, stack};
 use crate::model::candidates::Mode;
-use crate::model::projection::Projection;
-use crate::model::tangent::{Path, Step, matrix, stack};
-use crate::noise::spectrum::that_lie_apart;
+use crate::residual::spectrum::that_lie_apart;
 use nalgebra::{DMatrix, Vector2};
 
 /// Ratio of neighboring frequencies on the grid of second bodies.

@@ -6,12 +6,13 @@ use crate::answer::{
 };
 use crate::evidence::context::{Context, Shift};
 use crate::evidence::inclusion::Inclusion;
-use crate::evidence::weights::{DISTINCT_DISTANCE, OFF_BY_CHANCE, Weighed, acts};
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
 use crate::fit::fitted::Fit;
+use crate::fit::significance::OFF_BY_CHANCE;
 use crate::model::candidate::Candidate;
 use crate::model::vocabulary::evidence_class;
+use crate::sets::weights::{DISTINCT_DISTANCE, Weighed, acts};
 
 /// Probability that a constant torque, and not a wrong nominal rest angle, has shifted the rest position,
 /// where this shift alone explains as much as the whole recalibration.

@@ -1,0 +1,6 @@
+//! What an effect would change about a fit, to first order.
+
+pub(crate) mod dictionary;
+pub(crate) mod projection;
+pub(crate) mod second_mode;
+pub(crate) mod tangent;
