@@ -14,7 +14,7 @@ use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::model::hypothesis::{Calibrated as Coefficient, Hypothesis};
-use crate::noise::statistics::normal_above;
+use crate::noise::statistics::{normal_above, quantile, resampled};
 use crate::search::refine::without;
 use crate::sets::archive::Archive;
 use crate::sets::shooting_interval::shortened;
@@ -279,23 +279,16 @@ impl<'a> Context<'a> {
             let total: f64 = values.iter().map(|v| v.max(0.0)).sum();
             values.iter().map(|v| if total > 0.0 { v.max(0.0) / total } else { 0.0 }).collect()
         };
-        let mut generator = self.settings.seed.child("shares").generator();
-        let draws: Vec<Vec<f64>> = (0..400)
-            .map(|_| {
-                let drawn: Vec<usize> = all
-                    .iter()
-                    .map(|_| rand::RngExt::random_range(&mut generator, 0..segments.max(1)))
-                    .collect();
-                relative(&by_segment(&drawn))
-            })
-            .collect();
+        let seed = self.settings.seed.child("shares");
+        let draws: Vec<Vec<f64>> =
+            resampled(segments, 400, &seed).map(|drawn| relative(&by_segment(&drawn))).collect();
         values
             .iter()
             .zip(relative(&values))
             .enumerate()
             .map(|(index, (squares, value))| {
                 let own: Vec<f64> = draws.iter().filter_map(|draw| draw.get(index).copied()).collect();
-                let end = |share: f64| crate::noise::statistics::quantile(&own, share);
+                let end = |share: f64| quantile(&own, share);
                 (*squares, Interval { value, interval_95: [end(0.025), end(0.975)] })
             })
             .collect()

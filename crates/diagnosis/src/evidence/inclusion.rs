@@ -16,6 +16,7 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
+use crate::noise::statistics::resampled;
 use crate::residual::floor;
 use crate::sets::archive::vanished;
 use crate::sets::proposals::proposal;
@@ -163,33 +164,27 @@ impl<'a> Inclusion<'a> {
     /// sets with one of them alone, the best with either differ by no more than [`REPLACED`]. `None` otherwise.
     /// `most` is the largest evidence of a class.
     fn either(&self, one: EvidenceClass, other: EvidenceClass, most: f64) -> Option<f64> {
-        let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
-        let with_one = place(&|fit| fit.hypothesis.holds(one) && fit.hypothesis.lacks(other))?;
-        let with_other = place(&|fit| fit.hypothesis.holds(other) && fit.hypothesis.lacks(one))?;
-        let neither = place(&|fit| fit.hypothesis.lacks(one) && fit.hypothesis.lacks(other))?;
-        let set = |at: usize| self.sets.weighed.get(at);
-        if (set(with_one)?.evidence - set(with_other)?.evidence).abs() > REPLACED {
+        let with_one = self.first(&|fit| fit.hypothesis.holds(one) && fit.hypothesis.lacks(other))?;
+        let with_other = self.first(&|fit| fit.hypothesis.holds(other) && fit.hypothesis.lacks(one))?;
+        let neither = self.first(&|fit| fit.hypothesis.lacks(one) && fit.hypothesis.lacks(other))?;
+        if (with_one.0.evidence - with_other.0.evidence).abs() > REPLACED {
             return None;
         }
-        let best = with_one.min(with_other);
-        // Places are indices of the weighed sets.
-        let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
-        // Places are indices of the weighed sets.
-        let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
-        let replacement = evidence(best) - evidence(neither);
+        let best = if with_one.0.evidence < with_other.0.evidence { with_other } else { with_one };
+        let replacement = best.0.evidence - neither.0.evidence;
         let evidence = ClassEvidence { replacement, half_swings: None };
-        let shown = Shown { evidence: &evidence, ratio: error(neither) / error(best), most };
+        let shown = Shown { evidence: &evidence, ratio: neither.1.error / best.1.error, most };
         Some(probability(&shown, self.sets.left_over))
     }
 
+    /// Returns the best set that has a property, with what it leaves.
+    fn first(&self, has: &dyn Fn(&Fit) -> bool) -> Option<(&Weighed<'a>, &Left)> {
+        self.sets.weighed.iter().zip(&self.sets.left).find(|(set, _)| has(set.fit))
+    }
+
     fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {
-        let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
-        let (with, without) =
-            (place(&|fit| fit.hypothesis.holds(class))?, place(&|fit| fit.hypothesis.lacks(class))?);
-        // Places are indices of the weighed sets.
-        let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
-        // Places are indices of the weighed sets.
-        let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
+        let with = self.first(&|fit| fit.hypothesis.holds(class))?;
+        let without = self.first(&|fit| fit.hypothesis.lacks(class))?;
         Some(EffectClass {
             id: class.id(),
             probability: 0.0,
@@ -197,11 +192,11 @@ impl<'a> Inclusion<'a> {
             gap_share: None,
             kinds: self.kinds(class),
             kind_is_told: self.is_kind_told(class),
-            error_without: error(without),
-            error_with: error(with),
+            error_without: without.1.error,
+            error_with: with.1.error,
             stability: self.stability(class, seed),
             evidence: ClassEvidence {
-                replacement: evidence(with) - evidence(without),
+                replacement: with.0.evidence - without.0.evidence,
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },
         })
@@ -308,16 +303,10 @@ impl<'a> Inclusion<'a> {
     /// Returns the share of the draws of segments in which the best set has the class.
     fn stability(&self, class: EvidenceClass, seed: &Seed) -> f64 {
         // Without sets nothing is drawn.
-        let segments = self.sets.left.first().map_or(0, |left| left.powers.len()).max(1);
-        let mut generator = seed.child("stability").generator();
-        let comes_back = (0..DRAWS).filter(|_| {
-            let drawn: Vec<usize> =
-                (0..segments).map(|_| rand::RngExt::random_range(&mut generator, 0..segments)).collect();
+        let segments = self.sets.left.first().map_or(0, |left| left.powers.len());
+        let comes_back = resampled(segments, DRAWS, &seed.child("stability")).filter(|drawn| {
             let of = |(w, left): (&Weighed<'_>, &Left)| {
-                (
-                    self.sets.likelihood.log_of(&left.powers, &drawn) - left.price,
-                    w.fit.hypothesis.holds(class),
-                )
+                (self.sets.likelihood.log_of(&left.powers, drawn) - left.price, w.fit.hypothesis.holds(class))
             };
             let best =
                 self.sets.weighed.iter().zip(&self.sets.left).map(of).max_by(|a, b| a.0.total_cmp(&b.0));

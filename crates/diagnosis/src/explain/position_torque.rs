@@ -14,7 +14,7 @@ use crate::evidence::context::{Context, Held};
 use crate::evidence::held_out::{Both, HeldOut};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::Moving;
-use crate::noise::statistics::quantile;
+use crate::noise::statistics::{quantile, resampled};
 use crate::search::position_torque::{beside, evidence};
 use crate::sets::shooting_interval::shortened;
 use crate::sets::weights::EVEN;
@@ -74,13 +74,8 @@ fn share(work: &Context<'_>, named: &Fit, followed: &Fit) -> Interval {
         let whole = sum(&before) - sum(&after);
         if whole > 0.0 { ((sum(&between) - sum(&after)) / whole).clamp(0.0, 1.0) } else { 0.0 }
     };
-    let mut generator = work.settings.seed.child("unnamed share").generator();
-    let draws: Vec<f64> = (0..400)
-        .map(|_| {
-            let drawn = all.iter().map(|_| rand::RngExt::random_range(&mut generator, 0..all.len().max(1)));
-            of(&drawn.collect::<Vec<_>>())
-        })
-        .collect();
+    let seed = work.settings.seed.child("unnamed share");
+    let draws: Vec<f64> = resampled(all.len(), 400, &seed).map(|drawn| of(&drawn)).collect();
     Interval { value: of(&all), interval_95: [quantile(&draws, 0.025), quantile(&draws, 0.975)] }
 }
 

@@ -1,5 +1,7 @@
 //! Basic statistics.
 
+use rand::RngExt;
+use seed::Seed;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 /// Returns the mean; 0 for no values.
@@ -82,6 +84,12 @@ pub(crate) fn sixths(errors: &[f64]) -> Vec<Option<f64>> {
         _ => None,
     });
     std::iter::once(None).chain(inner).chain([None]).take(errors.len()).collect()
+}
+
+/// Returns `draws` draws of `count` indices with replacement, as for a bootstrap.
+pub(crate) fn resampled(count: usize, draws: usize, seed: &Seed) -> impl Iterator<Item = Vec<usize>> + use<> {
+    let mut generator = seed.generator();
+    (0..draws).map(move |_| (0..count).map(|_| generator.random_range(0..count)).collect())
 }
 
 #[cfg(test)]

@@ -17,10 +17,10 @@ use crate::search::from_afar::from_afar;
 use crate::search::gains::{pairs, promising, singles, stands_alone, stands_out};
 use crate::sets::archive::{Archive, is_another};
 use crate::sets::proposals::{
-    Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, reshaped, simplified,
-    take_in,
+    Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, simplified, take_in,
 };
 use crate::sets::score::squares_at;
+use crate::sets::weights::Weighing;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -36,13 +36,24 @@ const LEFT: f64 = 1.3;
 const DEPTH: usize = 3;
 const MOST_ROUNDS: usize = 16;
 
+/// Numbers of single candidates and of pairs that are fitted in the first round, and of candidates added to a set.
+const SINGLES: usize = 8;
+const PAIRS: usize = 8;
+const ADDITIONS: usize = 4;
+
+/// Number of candidates tried in the place of a member of a large set.
+const INSTEAD: usize = 2;
+
+/// Largest number of times that the set of the largest weight is examined after the search.
+const WEIGHED: usize = 2;
+
 /// Distance in score from the best beyond which a set is not fitted to its end.
 const FAR_BEHIND: f64 = 30.0;
 
 /// Proposes additions at a fit. `best` marks the best set.
 fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
-    let &Asked { data, candidates, breadth, threshold, .. } = asked;
-    let additions_tried = if leaves_more(data, base) { 2 * breadth.additions } else { breadth.additions };
+    let &Asked { data, candidates, most_effects, threshold, .. } = asked;
+    let additions_tried = if leaves_more(data, base) { 2 * ADDITIONS } else { ADDITIONS };
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
     let size = base.hypothesis.counted().count();
@@ -55,7 +66,7 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
         }
     }
     let ranked: Vec<Gain> = ranked.into_iter().filter(counts).collect();
-    if size < breadth.most_effects {
+    if size < most_effects {
         let worth = |gain: f64, looked: f64| promising(base, time, gain, threshold, looked);
         for gain in
             ranked.iter().take(additions_tried).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
@@ -81,7 +92,7 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
 /// largest gains, and those that the member is easily confused with. Also returns the fits without the
 /// member: from this start they are often better than on their own.
 fn swaps(asked: &Asked<'_>, base: &Fit) -> (Vec<Proposal>, Vec<Fit>) {
-    let &Asked { data, candidates, breadth, .. } = asked;
+    let &Asked { data, candidates, .. } = asked;
     let counted: Vec<Candidate> = base.hypothesis.counted().copied().collect();
     let of = |&member: &Candidate| {
         let reduced = proposal(data, base, &[member], &[]);
@@ -90,7 +101,7 @@ fn swaps(asked: &Asked<'_>, base: &Fit) -> (Vec<Proposal>, Vec<Fit>) {
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
         let is_confused = |gain: &Gain| dictionary.candidate(gain).is_some_and(|own| confused.contains(&own));
-        let several = if base.hypothesis.candidates.len() > 2 { 1 } else { breadth.additions };
+        let several = if base.hypothesis.candidates.len() > 2 { INSTEAD } else { ADDITIONS };
         let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
         let proposals: Vec<Proposal> = chosen
             .map(|(_, gain)| proposal(data, &bare, &[], &additions(&data.facts, &dictionary, gain)))
@@ -133,15 +144,13 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
 
 /// Runs the first round: single candidates and pairs at the recalibrated simulator.
 fn begin(asked: &Asked<'_>, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>) {
-    let &Asked { data, calibrated, candidates, breadth, threshold, .. } = asked;
+    let &Asked { data, calibrated, candidates, threshold, .. } = asked;
     let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return };
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
     let time = calibrated.autocorrelation_time();
     let worth = |gain: f64, looked: f64| promising(calibrated, time, gain, threshold, looked);
-    for gain in
-        ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
-    {
+    for gain in ranked.iter().take(SINGLES).filter(|gain| worth(gain.squares, dictionary.looked(gain))) {
         proposals.push(proposal(data, calibrated, &[], &additions(&data.facts, &dictionary, gain)));
     }
     for (candidate, parameters, _) in dictionary.further.iter().filter(|(candidate, _, gain)| {
@@ -151,10 +160,8 @@ fn begin(asked: &Asked<'_>, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>
     }
     // Pairs have to keep up with these.
     settle(data, pool, tried, std::mem::take(&mut proposals));
-    for gain in pairs(&dictionary)
-        .iter()
-        .take(breadth.pairs)
-        .filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+    for gain in
+        pairs(&dictionary).iter().take(PAIRS).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
     {
         proposals.push(proposal(data, calibrated, &[], &additions(&data.facts, &dictionary, gain)));
     }
@@ -251,18 +258,7 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         }
     }
     polish(data, pool);
-    reshape(data, pool);
     without_members(data, pool);
-}
-
-/// Refits the best set from each shape that its members may have. Friction that stops the motion half a swing
-/// too early or too late has a local minimum for each such half swing, and effects added there compensate for
-/// the error.
-fn reshape(data: &Data, pool: &mut Archive) {
-    let ranked = pool.ranked(pool.autocorrelation_time());
-    // Without a set there is nothing to refit.
-    let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
-    take_in(data, pool, begun, Stopping::SEARCH);
 }
 
 /// Refits every subset of the best set that was rejected, or whose known fit ended farther from the data than
@@ -281,6 +277,26 @@ fn without_members(data: &Data, pool: &mut Archive) {
     let is_worth_it = |own: &Proposal| is_rejected(own) || begins_closer(data, pool, own);
     let begun: Vec<Proposal> = without.filter(is_worth_it).collect();
     take_in(data, pool, begun, Stopping::FINAL);
+}
+
+/// Examines the set of the largest weight as the search examines that of the highest score: the evidence for a class
+/// is that of the best set with it minus that of the best set without it.
+pub(crate) fn around_the_weightiest(asked: &Asked<'_>, explored: &mut Explored) {
+    let &Asked { data, calibrated, candidates, .. } = asked;
+    let mut before = None;
+    for _ in 0..WEIGHED {
+        let archive = &explored.archive;
+        let weighing = Weighing::of(data, calibrated, archive, candidates.len());
+        let Some(best) = weighing.weigh(archive).first().map(|best| best.fit.clone()) else { return };
+        if before.replace(best.hypothesis.ranks()) == Some(best.hypothesis.ranks()) {
+            return;
+        }
+        let (proposals, dropped) = moves(asked, &best, true);
+        for fit in dropped {
+            explored.archive.admit(data, fit);
+        }
+        settle(data, &mut explored.archive, &mut explored.tried, proposals);
+    }
 }
 
 /// Returns the proposals around a set, and the sets that were fitted to find them.

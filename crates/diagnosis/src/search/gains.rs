@@ -2,20 +2,23 @@
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
-use crate::linear::dictionary::{Dictionary, Gain};
+use crate::linear::dictionary::{Dictionary, Entry, Gain};
 use crate::model::candidate::Candidate;
 use crate::residual::spectrum::DECAYS;
 use crate::sets::proposals::{Proposal, additions, proposal};
 
-/// Returns the gains of single entries, with the best shape of each candidate, largest first.
-pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
-    let mut best: Vec<(Candidate, Gain)> = Vec::new();
-    for (index, entry) in dictionary.entries.iter().enumerate() {
-        let Some(gain) = dictionary.gain(&[index]) else { continue };
-        match best.iter_mut().find(|(candidate, _)| *candidate == entry.candidate) {
+/// Returns the largest gain of each group of sets of entries, largest first.
+pub(crate) fn best_of_each<K: PartialEq>(
+    dictionary: &Dictionary,
+    sets: impl Iterator<Item = (K, Vec<usize>)>,
+) -> Vec<Gain> {
+    let mut best: Vec<(K, Gain)> = Vec::new();
+    for (group, entries) in sets {
+        let Some(gain) = dictionary.gain(&entries) else { continue };
+        match best.iter_mut().find(|(known, _)| *known == group) {
             Some((_, known)) if gain.squares > known.squares => *known = gain,
             Some(_) => {}
-            None => best.push((entry.candidate, gain)),
+            None => best.push((group, gain)),
         }
     }
     let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
@@ -23,26 +26,21 @@ pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
     gains
 }
 
-/// Returns the joint gains of two candidates, with the best shapes of each pair, largest first.
+/// Returns the gains of single candidates, with the best shape of each.
+pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
+    let entries = dictionary.entries.iter().enumerate();
+    best_of_each(dictionary, entries.map(|(index, entry)| (entry.candidate, vec![index])))
+}
+
+/// Returns the joint gains of two candidates, with the best shapes of each pair.
 pub(crate) fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
-    let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
-    for (first, one) in dictionary.entries.iter().enumerate() {
-        for (second, other) in dictionary.entries.iter().enumerate().skip(first + 1) {
-            if one.candidate == other.candidate {
-                continue;
-            }
-            let Some(gain) = dictionary.gain(&[first, second]) else { continue };
-            let pair = (one.candidate, other.candidate);
-            match best.iter_mut().find(|(known, _)| *known == pair) {
-                Some((_, known)) if gain.squares > known.squares => *known = gain,
-                Some(_) => {}
-                None => best.push((pair, gain)),
-            }
-        }
-    }
-    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
-    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
-    gains
+    let entries = || dictionary.entries.iter().enumerate();
+    let beside = |(first, one): (usize, &Entry)| {
+        let one = one.candidate;
+        let others = entries().skip(first + 1).filter(move |(_, other)| other.candidate != one);
+        others.map(move |(second, other)| ((one, other.candidate), vec![first, second]))
+    };
+    best_of_each(dictionary, entries().flat_map(beside))
 }
 
 /// Autocorrelation time, in samples, up to which a residual counts as white: it then hides nothing more.

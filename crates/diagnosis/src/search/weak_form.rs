@@ -21,6 +21,7 @@ use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::predictor::Motion;
 use crate::residual::floor;
 use crate::search::bump::bumps;
+use crate::search::gains::best_of_each;
 use crate::search::smoothed::smoothed;
 use dynamics::{Coefficients, Input, Nominal};
 use nalgebra::DMatrix;
@@ -148,26 +149,16 @@ impl<'a> WeakForm<'a> {
 
     /// Returns the best sets with one law more, each with its best shapes.
     fn extended(&self, sets: &[Gain]) -> Vec<Gain> {
-        let mut best: Vec<(Vec<usize>, Gain)> = Vec::new();
-        let mut take = |gain: Gain| {
-            let ranks = self.ranks(&gain);
-            match best.iter_mut().find(|(known, _)| *known == ranks) {
-                Some((_, known)) if gain.squares > known.squares => *known = gain,
-                Some(_) => {}
-                None => best.push((ranks, gain)),
-            }
-        };
         let all = 0..self.dictionary.entries.len();
-        for set in sets {
-            for entry in all.clone().filter(|entry| self.fits(&set.entries, *entry)) {
-                self.dictionary
-                    .gain(&[set.entries.as_slice(), &[entry]].concat())
-                    .into_iter()
-                    .for_each(&mut take);
-            }
-        }
-        let mut best: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
-        best.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+        let with = |set: &Gain, entry: usize| {
+            let entries = [set.entries.as_slice(), &[entry]].concat();
+            (self.ranks(&entries), entries)
+        };
+        let larger = sets.iter().flat_map(|set| {
+            let others = all.clone().filter(|entry| self.fits(&set.entries, *entry));
+            others.map(|entry| with(set, entry))
+        });
+        let mut best = best_of_each(&self.dictionary, larger);
         best.truncate(WIDTH);
         let mut best: Vec<Gain> = best.into_iter().map(|gain| self.reshaped(gain)).collect();
         best.sort_by(|a, b| b.squares.total_cmp(&a.squares));
@@ -198,8 +189,8 @@ impl<'a> WeakForm<'a> {
         self.dictionary.entries.get(entry).map(|own| own.candidate)
     }
 
-    fn ranks(&self, gain: &Gain) -> Vec<usize> {
-        let candidates = gain.entries.iter().filter_map(|entry| self.candidate(*entry));
+    fn ranks(&self, entries: &[usize]) -> Vec<usize> {
+        let candidates = entries.iter().filter_map(|entry| self.candidate(*entry));
         let mut ranks: Vec<usize> = candidates.map(|own| own.rank()).collect();
         ranks.sort_unstable();
         ranks

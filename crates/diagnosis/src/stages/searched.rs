@@ -6,9 +6,8 @@ use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
-use crate::search::asked::{Asked, Breadth};
-use crate::search::beam::{Explored, go_on, search};
-use crate::search::plain::plain_family;
+use crate::search::asked::Asked;
+use crate::search::beam::{Explored, around_the_weightiest, search};
 use crate::sets::archive::Archive;
 use crate::sets::proposals::proposal;
 use crate::sets::score::score;
@@ -38,7 +37,6 @@ pub(crate) struct Searched {
     /// them.
     pub(crate) interval: ShootingInterval,
     pub(crate) found: Archive,
-    pub(crate) breadth: Breadth,
 }
 
 impl Searched {
@@ -50,28 +48,19 @@ impl Searched {
         is_whole: bool,
         known: Option<Known>,
     ) -> Self {
-        let breadth = Breadth {
-            most_effects: request.settings.most_effects.clamp(1, MOST_EFFECTS),
-            singles: 8,
-            pairs: 8,
-            additions: 4,
-        };
         let Question { candidates, proposed, coarse, coarse_base, enough, .. } = question;
         let asked = Asked {
             data: coarse,
             calibrated: coarse_base,
             candidates,
             proposed,
-            breadth: &breadth,
+            most_effects: request.settings.most_effects.clamp(1, MOST_EFFECTS),
             threshold: *enough,
         };
         let (interval, mut explored) = explore(&asked, is_whole, known);
         let ShootingInterval { data, calibrated, .. } = &interval;
-        let asked = Asked { data, calibrated, ..asked };
-        plain_family(data, calibrated, candidates, &mut explored.archive);
-        go_on(&asked, &mut explored);
-        let found = explored.archive;
-        Self { interval, found, breadth }
+        around_the_weightiest(&Asked { data, calibrated, ..asked }, &mut explored);
+        Self { interval, found: explored.archive }
     }
 
     /// Returns the best set.
