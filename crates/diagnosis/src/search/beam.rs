@@ -17,10 +17,10 @@ use crate::search::from_afar::from_afar;
 use crate::search::gains::{pairs, promising, singles, stands_alone, stands_out};
 use crate::sets::archive::{Archive, is_another};
 use crate::sets::proposals::{
-    Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, simplified, take_in,
+    Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, reshaped, simplified,
+    take_in,
 };
 use crate::sets::score::squares_at;
-use crate::sets::weights::Weighing;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -40,12 +40,6 @@ const MOST_ROUNDS: usize = 16;
 const SINGLES: usize = 8;
 const PAIRS: usize = 8;
 const ADDITIONS: usize = 4;
-
-/// Number of candidates tried in the place of a member of a large set.
-const INSTEAD: usize = 2;
-
-/// Largest number of times that the set of the largest weight is examined after the search.
-const WEIGHED: usize = 2;
 
 /// Distance in score from the best beyond which a set is not fitted to its end.
 const FAR_BEHIND: f64 = 30.0;
@@ -101,7 +95,7 @@ fn swaps(asked: &Asked<'_>, base: &Fit) -> (Vec<Proposal>, Vec<Fit>) {
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
         let is_confused = |gain: &Gain| dictionary.candidate(gain).is_some_and(|own| confused.contains(&own));
-        let several = if base.hypothesis.candidates.len() > 2 { INSTEAD } else { ADDITIONS };
+        let several = if base.hypothesis.candidates.len() > 2 { 1 } else { ADDITIONS };
         let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
         let proposals: Vec<Proposal> = chosen
             .map(|(_, gain)| proposal(data, &bare, &[], &additions(&data.facts, &dictionary, gain)))
@@ -258,7 +252,18 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         }
     }
     polish(data, pool);
+    reshape(data, pool);
     without_members(data, pool);
+}
+
+/// Refits the best set from each shape that its members may have. Friction that stops the motion half a swing
+/// too early or too late has a local minimum for each such half swing, and effects added there compensate for
+/// the error.
+fn reshape(data: &Data, pool: &mut Archive) {
+    let ranked = pool.ranked(pool.autocorrelation_time());
+    // Without a set there is nothing to refit.
+    let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
+    take_in(data, pool, begun, Stopping::SEARCH);
 }
 
 /// Refits every subset of the best set that was rejected, or whose known fit ended farther from the data than
@@ -277,26 +282,6 @@ fn without_members(data: &Data, pool: &mut Archive) {
     let is_worth_it = |own: &Proposal| is_rejected(own) || begins_closer(data, pool, own);
     let begun: Vec<Proposal> = without.filter(is_worth_it).collect();
     take_in(data, pool, begun, Stopping::FINAL);
-}
-
-/// Examines the set of the largest weight as the search examines that of the highest score: the evidence for a class
-/// is that of the best set with it minus that of the best set without it.
-pub(crate) fn around_the_weightiest(asked: &Asked<'_>, explored: &mut Explored) {
-    let &Asked { data, calibrated, candidates, .. } = asked;
-    let mut before = None;
-    for _ in 0..WEIGHED {
-        let archive = &explored.archive;
-        let weighing = Weighing::of(data, calibrated, archive, candidates.len());
-        let Some(best) = weighing.weigh(archive).first().map(|best| best.fit.clone()) else { return };
-        if before.replace(best.hypothesis.ranks()) == Some(best.hypothesis.ranks()) {
-            return;
-        }
-        let (proposals, dropped) = moves(asked, &best, true);
-        for fit in dropped {
-            explored.archive.admit(data, fit);
-        }
-        settle(data, &mut explored.archive, &mut explored.tried, proposals);
-    }
 }
 
 /// Returns the proposals around a set, and the sets that were fitted to find them.

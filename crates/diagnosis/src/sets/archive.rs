@@ -48,6 +48,30 @@ impl Archive {
         self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
     }
 
+    /// Returns the sets and candidates for another search, if this one was misled: its leading set is missing
+    /// from `refined`, the archive on every sample. These are the sets that `refined` has too, and the
+    /// candidates without the leader's members that no refined set holds. `None` if the search was not misled
+    /// or nothing would change.
+    pub(crate) fn misled(
+        &self,
+        refined: &Self,
+        candidates: &[Candidate],
+    ) -> Option<(Vec<Fit>, Vec<Candidate>)> {
+        let leader = &self.ranked(self.autocorrelation_time()).first().copied()?.hypothesis.candidates;
+        if refined.find(leader).is_some() {
+            return None;
+        }
+        let stays = |candidate: &Candidate| {
+            refined.fits.iter().any(|fit| fit.hypothesis.candidates.contains(candidate))
+        };
+        let gone = |candidate: &Candidate| leader.contains(candidate) && !stays(candidate);
+        let others: Vec<Candidate> =
+            candidates.iter().copied().filter(|candidate| !gone(candidate)).collect();
+        let known = self.fits.iter().filter(|fit| refined.find(&fit.hypothesis.candidates).is_some());
+        let known: Vec<Fit> = known.filter(|fit| !fit.hypothesis.candidates.is_empty()).cloned().collect();
+        (others.len() < candidates.len() && !known.is_empty()).then_some((known, others))
+    }
+
     /// Admits a fit if it is better than the known one of its set. A set with a vanished member is rejected.
     pub(crate) fn admit(&mut self, data: &Data, fit: Fit) {
         if vanished(data, &fit) {
@@ -126,4 +150,37 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let mut own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
     own.any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
         || is_another(data, fit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Archive;
+    use crate::fit::fitted::Fit;
+    use crate::model::candidate::Candidate;
+    use crate::model::candidates::flexible_coupling::FlexibleCoupling;
+    use crate::model::candidates::gravity::Gravity;
+    use crate::model::candidates::quadratic_drag::QuadraticDrag;
+    use crate::sets::score::calibrated_swing;
+
+    const GRAVITY: Candidate = Candidate::new(&Gravity);
+    const SECOND_BODY: Candidate = Candidate::new(&FlexibleCoupling);
+
+    #[test]
+    fn a_search_led_by_what_does_not_stay_is_made_again_without_it() {
+        let (_, base) = calibrated_swing();
+        let set = |candidates: &[Candidate], part: f64| Fit {
+            hypothesis: base.hypothesis.with(candidates),
+            squares: part * base.squares,
+            ..base.clone()
+        };
+        let (leader, other) = (set(&[GRAVITY, SECOND_BODY], 0.1), set(&[GRAVITY], 0.5));
+        let pool = |fits: &[&Fit]| Archive::from(fits.iter().map(|fit| (*fit).clone()).collect(), Vec::new());
+        let found = pool(&[&base, &leader, &other]);
+        let all = [GRAVITY, SECOND_BODY, Candidate::new(&QuadraticDrag)];
+        assert_eq!(found.misled(&pool(&[&base, &leader]), &all), None);
+        let (known, others) = found.misled(&pool(&[&base, &other]), &all).unwrap();
+        assert_eq!(known, [other]);
+        assert_eq!(others, [all[0], all[2]]);
+        assert_eq!(found.misled(&pool(&[&base]), &all), None, "there is nothing left to go on from");
+    }
 }

@@ -128,6 +128,28 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
     proposals
 }
 
+/// Proposes to refit a set from its end point, with the shape of one member replaced by each shape that it
+/// may begin with.
+pub(crate) fn reshaped(data: &Data, ended: &Fit) -> Vec<Proposal> {
+    let parts = ended.hypothesis.parts(&data.facts, &ended.point.globals);
+    let mut begun = Vec::new();
+    let mut first = ended.hypothesis.calibrated.len();
+    for (member, part) in ended.hypothesis.candidates.iter().zip(parts) {
+        let parameters = member.parameters(&data.facts);
+        let has_shape = parameters.iter().any(|parameter| parameter.shape);
+        for shape in member.shapes(&data.facts).into_iter().filter(|_| has_shape) {
+            let mut point = ended.point.clone();
+            let places = point.globals.iter_mut().skip(first).zip(parameters.iter().zip(shape));
+            for (place, (_, shape)) in places.filter(|(_, (parameter, _))| parameter.shape) {
+                *place = shape;
+            }
+            begun.push(Proposal { hypothesis: ended.hypothesis.clone(), point });
+        }
+        first += part.len();
+    }
+    begun
+}
+
 /// Proposes to replace each member by the simpler effect that it tends to, with the member's size. Friction
 /// that begins at zero often ends at a point where it stops the motion half a swing too early or too late.
 pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {

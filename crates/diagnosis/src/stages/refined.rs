@@ -9,6 +9,9 @@ use crate::fit::fitted::Point;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
+use crate::search::alternatives::alternatives;
+use crate::search::asked::Asked;
+use crate::search::beam::search;
 use crate::search::nameless::nameless;
 use crate::search::refine::refine;
 use crate::sets::archive::Archive;
@@ -39,18 +42,32 @@ pub(crate) struct Refined {
 impl Refined {
     pub(crate) fn of(question: Question, searched: Searched) -> Result<Self, DiagnosisError> {
         let hold = question.hold();
-        let Question { data, base: segments_base, candidates, .. } = question;
-        let Searched { interval: coarse, mut found } = searched;
+        let Question { data, base: segments_base, candidates, proposed, enough, .. } = question;
+        let Searched { interval: coarse, mut found, most_effects } = searched;
         let closest = found.ranked(found.autocorrelation_time());
         let closest = closest.first().map_or(&coarse.calibrated, |best| *best);
         let segments = data.with_fewer_knots(data.joined(coarse.by).spare_knots(closest));
         let data = segments.joined(coarse.by);
         let base = followed(&data, &Unjoined { data: &segments, base: &segments_base }, &coarse)?;
         let vocabulary = candidates.len();
+        alternatives(&coarse.data, &coarse.calibrated, &mut found, &candidates, vocabulary);
         nameless(&coarse.data, &coarse.calibrated, &mut found, vocabulary);
         let weighing = Weighing::of(&coarse.data, &coarse.calibrated, &found, vocabulary);
         let known = Archive::of(&base.calibrated);
-        let archive = refine(&data, &known, &weighing.weigh(&found), &found.rejected, &candidates);
+        let mut archive = refine(&data, &known, &weighing.weigh(&found), &found.rejected, &candidates);
+        if let Some((known, others)) = found.misled(&archive, &candidates) {
+            let asked = Asked {
+                data: &coarse.data,
+                calibrated: &coarse.calibrated,
+                candidates: &others,
+                proposed: &proposed,
+                most_effects,
+                threshold: enough,
+            };
+            found = search(&asked, known).archive;
+            let weighing = Weighing::of(&coarse.data, &coarse.calibrated, &found, vocabulary);
+            archive = refine(&data, &archive, &weighing.weigh(&found), &found.rejected, &others);
+        }
         let time = archive.autocorrelation_time();
         Ok(Self { candidates, segments, segments_base, hold, data, base, coarse, found, archive, time })
     }

@@ -7,7 +7,8 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::asked::Asked;
-use crate::search::beam::{Explored, around_the_weightiest, search};
+use crate::search::beam::{Explored, go_on, search};
+use crate::search::plain::plain_family;
 use crate::sets::archive::Archive;
 use crate::sets::proposals::proposal;
 use crate::sets::score::score;
@@ -37,6 +38,8 @@ pub(crate) struct Searched {
     /// them.
     pub(crate) interval: ShootingInterval,
     pub(crate) found: Archive,
+    /// Largest number of effects in a set.
+    pub(crate) most_effects: usize,
 }
 
 impl Searched {
@@ -49,18 +52,21 @@ impl Searched {
         known: Option<Known>,
     ) -> Self {
         let Question { candidates, proposed, coarse, coarse_base, enough, .. } = question;
+        let most_effects = request.settings.most_effects.clamp(1, MOST_EFFECTS);
         let asked = Asked {
             data: coarse,
             calibrated: coarse_base,
             candidates,
             proposed,
-            most_effects: request.settings.most_effects.clamp(1, MOST_EFFECTS),
+            most_effects,
             threshold: *enough,
         };
         let (interval, mut explored) = explore(&asked, is_whole, known);
         let ShootingInterval { data, calibrated, .. } = &interval;
-        around_the_weightiest(&Asked { data, calibrated, ..asked }, &mut explored);
-        Self { interval, found: explored.archive }
+        plain_family(data, calibrated, candidates, &mut explored.archive);
+        let asked = Asked { data, calibrated, ..asked };
+        go_on(&asked, &mut explored);
+        Self { interval, found: explored.archive, most_effects }
     }
 
     /// Returns the best set.
