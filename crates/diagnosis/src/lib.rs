@@ -6,6 +6,9 @@
 //! a [`Diagnosis`].
 //!
 //! # How an answer comes about
+//! The folders are layers, each of which names only those before it: `noise`, `data`, `residual`, `model`, `fit`,
+//! `linear`, `sets`, `measurement` and `search`, `evidence`, `explain`, `stages`.
+//!
 //! 1. **Measurement chain** (`measurement`, `noise`): the believed clock, outliers, the sensor's step, the noise
 //!    floor from second differences. Findings that stamps and values show directly are stated as they are.
 //! 2. **Segments** (`data`): records are cut into about six periods each, every segment with a start state of its

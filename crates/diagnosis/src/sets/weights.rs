@@ -120,7 +120,9 @@ pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
 /// (`experiments/rigs`, seed 1) flexible effects that gained 20 to 50 nats were there in 13 % of the cases,
 /// and plain laws that gained as much in 54 %: a small unlisted law leaves room for a flexible effect. With
 /// 30 nats, evidence meant the same for both. Since sets are weighed by segment it is 45, chosen with measured
-/// records in view and not yet learned from banks.
+/// records in view. On 290 rigs drawn after that (`short`, seeds 92001 to 92003), flexible classes stated at 0.5 to 0.7,
+/// 0.7 to 0.9 and above were there in 50, 88 and 97 % (n = 117), plain ones in 51, 72 and 95 % (n = 318): evidence means
+/// at least as much for a flexible effect.
 const FLEXIBLE: f64 = 45.0;
 
 /// Price in nats of every shape parameter of an effect: odds of twenty to one, so that a law counts as the
