@@ -1,4 +1,4 @@
-//! What an effect would change about a fit, to first order.
+//! Changes that an effect would make to a fit, to first order.
 
 pub(crate) mod dictionary;
 pub(crate) mod projection;
