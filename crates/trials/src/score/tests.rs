@@ -58,7 +58,7 @@ fn a_score_counts_every_case_once() {
     assert_eq!(found.unknown.areas[0].area.value, 1.0);
     assert_eq!(found.ratio_to_floor.median.value, 1.02);
     assert_eq!(found.baselines[0].top_1.of, 20);
-    assert_eq!(found.bars.len(), 13);
+    assert_eq!(found.bars.len(), 14);
     assert_eq!(found.left_out[0].bank, "engine");
     // A map fitted to the even half improves the other half's scores, whose confidence is too low.
     assert!(!found.map.knots.is_empty() && found.map.fitted_to > 20);
