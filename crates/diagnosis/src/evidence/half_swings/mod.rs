@@ -17,7 +17,7 @@ use crate::noise::statistics::median;
 use averaging::Restoring;
 use dynamics::effects::{CoulombFriction, QuadraticDrag};
 use record::Quantity;
-use regression::{Estimate, Hypothesis, Increments, Prior, by_replacement, hypotheses};
+use regression::{Hypothesis, Increments, Prior, by_replacement, hypotheses};
 use std::f64::consts::PI;
 use turning_points::{Turn, turning_points};
 
@@ -28,8 +28,9 @@ struct HalfSwing {
     time_s: f64,
     /// Half the distance between its turning points, in the observed unit.
     amplitude: f64,
-    /// Time between its turning points in seconds, with its standard error.
-    duration_s: Estimate,
+    /// Time between its turning points in seconds, and its standard error.
+    duration_s: f64,
+    duration_error_s: f64,
 }
 
 /// Evidence from half swings for laws of loss, in nats: the log evidence of the best combination with the law minus
@@ -46,6 +47,7 @@ pub(crate) struct Witness {
 const FEWEST: usize = 8;
 /// Largest relative change of the duration that the prior admits, over the amplitudes or over the record.
 const LARGEST_CHANGE: f64 = 0.5;
+
 /// Run of successive turning points of one record.
 struct Run {
     turns: Vec<Turn>,
@@ -76,7 +78,7 @@ pub(crate) fn half_swings(
     }
     // A loss lengthens the swing in second order, and the laws of loss are averaged over the swing that the
     // durations determine. So each is computed once with the other's result.
-    let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
+    let typical = median(&swings.iter().map(|swing| swing.duration_s).collect::<Vec<_>>());
     let (_, lost) = losses(&runs, &swings, &|_| Restoring::harmonic(PI / typical));
     let durations = durations(&runs, &swings, &lost);
     Some(losses(&runs, &swings, &|swing| restoring(durations.as_ref(), &swings, swing)).0)
@@ -87,10 +89,8 @@ fn swings(turns: &[Turn]) -> Vec<HalfSwing> {
     let swing = |(one, next): (&Turn, &Turn)| HalfSwing {
         time_s: 0.5 * (one.time_s + next.time_s),
         amplitude: 0.5 * (next.value - one.value).abs(),
-        duration_s: Estimate {
-            value: next.time_s - one.time_s,
-            error: (one.time_variance + next.time_variance).sqrt(),
-        },
+        duration_s: next.time_s - one.time_s,
+        duration_error_s: (one.time_variance + next.time_variance).sqrt(),
     };
     pairs.map(swing).collect()
 }
@@ -124,7 +124,7 @@ const LARGEST_LENGTHENING: f64 = 0.1;
 /// slides), never both. A fourth power is admitted only with a second one.
 fn durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Option<Hypothesis> {
     let increments = of_durations(runs, swings, lost);
-    let priors = of_terms(median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>()));
+    let priors = of_terms(median(&swings.iter().map(|swing| swing.duration_s).collect::<Vec<_>>()));
     let any = |acts: &[bool], terms: std::ops::Range<usize>| {
         acts.get(terms).is_some_and(|acts| acts.contains(&true))
     };
@@ -152,10 +152,10 @@ fn of_durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Vec<In
             let shares = run.swings.iter().zip(lost).map(|(swing, lost)| (lost / swing.amplitude).powi(2));
             let each = |term: &dyn Fn(&HalfSwing) -> f64| run.swings.iter().map(term).collect::<Vec<f64>>();
             let powers = (0..TIME).map(|term| each(&|swing| power(term, swing)));
-            let variances = each(&|swing| swing.duration_s.error.powi(2));
+            let variances = each(&|swing| swing.duration_error_s.powi(2));
             let shared = run.turns.iter().skip(1).map(|turn| -turn.time_variance).collect();
             Increments {
-                values: each(&|swing| swing.duration_s.value),
+                values: each(&|swing| swing.duration_s),
                 terms: powers.chain([each(&|swing| swing.time_s / span), shares.collect()]).collect(),
                 covariance: [variances, shared, vec![0.0; run.swings.len()]],
             }
@@ -182,7 +182,7 @@ fn of_terms(typical: f64) -> Vec<Prior> {
 fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfSwing) -> Restoring {
     let of = |term: usize| {
         // Without a fit of the durations they depend on nothing.
-        durations.and_then(|found| found.coefficients.get(term)).map_or(0.0, |estimate| estimate.value)
+        durations.and_then(|found| found.coefficients.get(term)).copied().unwrap_or(0.0)
     };
     let base = of(CONSTANT).max(f64::MIN_POSITIVE);
     let most = largest(swings);
@@ -262,7 +262,7 @@ fn losses(
         return (witness, lost.iter().map(|run| vec![0.0; run.len()]).collect());
     };
     let sum = |laws: &[f64; QUADRATIC + 1]| {
-        laws.iter().zip(&best.coefficients).map(|(law, own)| law * own.value).sum::<f64>()
+        laws.iter().zip(&best.coefficients).map(|(law, own)| law * own).sum::<f64>()
     };
     (witness, lost.iter().map(|run| run.iter().map(sum).collect()).collect())
 }

@@ -32,19 +32,12 @@ pub(crate) enum Prior {
     Within(f64),
 }
 
-/// Coefficient with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Estimate {
-    pub(crate) value: f64,
-    pub(crate) error: f64,
-}
-
 /// Hypothesis: the terms that act, its log evidence, and the coefficients (0 for terms that do not act).
 #[derive(Debug, Clone)]
 pub(crate) struct Hypothesis {
     pub(crate) acts: Vec<bool>,
     pub(crate) evidence: f64,
-    pub(crate) coefficients: Vec<Estimate>,
+    pub(crate) coefficients: Vec<f64>,
 }
 
 /// Exponents of the grid of ratios, in half powers of ten: the variance of the discrepancy over that of a
@@ -180,11 +173,11 @@ impl Banded {
 
 fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<Hypothesis> {
     let places: Vec<usize> = acts.iter().enumerate().filter(|(_, acts)| **acts).map(|(at, _)| at).collect();
-    let fits: Vec<(f64, Vec<Estimate>)> =
+    let fits: Vec<(f64, Vec<f64>)> =
         whitened.iter().filter_map(|one| evidence(one, priors, &places)).collect();
     let (most, own) = fits.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let sum: f64 = fits.iter().map(|(log, ..)| (log - most).exp()).sum();
-    let mut coefficients = vec![Estimate::default(); acts.len()];
+    let mut coefficients = vec![0.0; acts.len()];
     for (place, estimate) in places.iter().zip(own) {
         if let Some(slot) = coefficients.get_mut(*place) {
             *slot = *estimate;
@@ -198,8 +191,8 @@ fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<
 }
 
 /// Returns the log evidence of a set at one ratio, with scale and coefficients integrated out, and the
-/// coefficients with their standard errors.
-fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(f64, Vec<Estimate>)> {
+/// coefficients.
+fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(f64, Vec<f64>)> {
     let terms = places.len();
     let freedom = whitened.count.checked_sub(terms).filter(|left| *left >= 3)? as f64;
     let entry = |row: usize, column: usize| {
@@ -252,7 +245,7 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
             }
             _ => 0.0,
         };
-        estimates.push(Estimate { value, error });
+        estimates.push(value);
     }
     log.is_finite().then_some((log, estimates))
 }
