@@ -9,7 +9,7 @@ use crate::error::Fault;
 use crate::line::Line;
 use crate::lost::Numbers;
 use crate::record::{InputRow, Record, beside};
-use crate::stamps::{StampStatistics, stamp_rounding, statistics};
+use crate::stamps::{StampStatistics, stamp_rounding, statistics, without_ties};
 use crate::words::{counted, two_digits};
 use serde::{Deserialize, Serialize};
 
@@ -79,13 +79,15 @@ impl Clock {
     ///
     /// The regression uses only the last sample of each group of equal stamps: it waited least for the host,
     /// so its stamp is the least late. Samples are numbered by their rows, so rows without a value are
-    /// counted.
+    /// counted. If no more than a tenth of the stamps repeat, they are ties of stamps that scatter, and are moved
+    /// apart by less than their rounding.
     ///
     /// `Auto` decides in this order:
     /// 1. Repeated stamps: two samples cannot be taken at once, so the stamps are receive times. The clock is
     ///    even in the index, with lost samples counted where groups come later than their samples explain.
     /// 2. Gaps: samples are missing, so the index is no clock. The host clock is used, unless the values run
-    ///    more smoothly (as in 5) on the index with the lost samples counted. Among steps of rounded or
+    ///    more smoothly (as in 5) on the index with the lost samples counted, or with none lost where more than
+    ///    one step in twenty is long, as in stamps that scatter by an interval. Among steps of rounded or
     ///    jittered stamps a lost sample need not make a long step, and only counting finds it; the rules
     ///    below therefore count lost samples in an even index too.
     /// 3. An even clock reproduces every stamp to a millionth of an interval, or to the step to which the
@@ -99,7 +101,8 @@ impl Clock {
     /// # Errors
     /// [`Fault::NoTimePasses`] if all stamps are equal.
     pub fn new(record: &Record, choice: ClockChoice) -> Result<Self, Fault> {
-        let stamps = record.stamps_s();
+        let rounding = stamp_rounding(record.stamps_s());
+        let stamps = &*without_ties(record.stamps_s(), rounding);
         // Every record has samples; `Record::new` checks it.
         let first = stamps.first().copied().unwrap_or_default();
         let rows = record.row_numbers();
@@ -108,11 +111,10 @@ impl Clock {
             return Err(Fault::NoTimePasses { stamp: first });
         }
         // Stamps that lie on no lattice are not rounded.
-        let rounding = stamp_rounding(stamps).unwrap_or(0.0);
-        let numbers = Numbers::with_lost(&ends, &rows, record.values(), rounding)
+        let numbers = Numbers::with_lost(&ends, &rows, record.values(), rounding.unwrap_or(0.0))
             .unwrap_or_else(|| Numbers::plain(&ends, &rows));
         let line = Line::through(&numbers.ends);
-        let statistics = statistics(stamps, record.values(), &ends, &numbers, &line);
+        let statistics = statistics(stamps, record.values(), &ends, &numbers, &line, rounding);
         let rate = 1.0 / line.slope;
         let (kind, reason) = match choice {
             ClockChoice::Host => (ClockKind::Host, "set in the configuration".to_owned()),
@@ -204,7 +206,8 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
         );
         return (ClockKind::IndexWithGaps, reason);
     }
-    if found.gaps > 0 {
+    let is_scatter = found.lost == 0 && found.gaps as f64 > SELDOM * stamps.len() as f64 && preference > SIGNIFICANT;
+    if found.gaps > 0 && !is_scatter {
         let reason = format!(
             "{} of more than 1.5 times the median step: samples are missing, so the index is not a clock",
             counted(found.gaps, "gap"),
@@ -256,6 +259,10 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
 /// values show.
 const EVEN: f64 = 1e-6;
 
+/// Share of long steps beyond which scatter of the stamps makes them, if the values agree and no loss is found:
+/// stamps that scatter by an interval and are sorted have long steps everywhere.
+const SELDOM: f64 = 0.05;
+
 /// Number of standard errors that a preference must exceed: 1 % by chance, one-sided.
 const SIGNIFICANT: f64 = 2.33;
 
@@ -293,6 +300,19 @@ mod tests {
     /// Returns pseudo-random numbers in −0.5..0.5 without a generator.
     fn noise(index: usize) -> f64 {
         (index as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5
+    }
+
+    /// Stamps that scatter by an interval, in the order of their times.
+    #[test]
+    fn stamps_that_scatter_by_an_interval_have_no_gaps() {
+        let times: Vec<f64> = (0..3000).map(|index| index as f64 / 100.0).collect();
+        let mut stamps: Vec<f64> =
+            times.iter().enumerate().map(|(index, time)| time + 3e-2 * noise(index)).collect();
+        stamps.sort_by(f64::total_cmp);
+        let values = times.iter().enumerate().map(|(at, t)| (6.0 * t).sin() + 2e-3 * noise(7 * at + 1)).collect();
+        let record = Record::new(stamps, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+        assert_eq!(clock.kind, ClockKind::UniformIndex, "{} {:?}", clock.reason, clock.statistics);
     }
 
     #[test]

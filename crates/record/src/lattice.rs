@@ -15,8 +15,14 @@ pub struct Lattice {
 /// Largest misfit that still counts as a lattice, in steps: half the misfit of values without one.
 const LARGEST_MISFIT: f64 = 0.145;
 
-/// Smallest number of distinct values from which a step can be found.
+/// The same for few values, which a line through them fits more easily.
+const LARGEST_OF_FEW: f64 = 0.03;
+
+/// Smallest number of distinct values from which a step can be found, and the smallest where each is read so
+/// many times on average that only steps explain it.
 const FEWEST_VALUES: usize = 8;
+const FEWEST_REPEATED: usize = 4;
+const REPEATED: usize = 10;
 
 impl Lattice {
     /// Finds the lattice of some values; returns `None` if they lie on none. The cost is one sort.
@@ -31,7 +37,8 @@ impl Lattice {
         // Converted units can make equal positions differ in their last bits.
         let same = span * 1e-12;
         sorted.dedup_by(|later, earlier| *later - *earlier <= same);
-        if sorted.len() < FEWEST_VALUES {
+        let is_repeated = sorted.len() >= FEWEST_REPEATED && values.len() >= REPEATED * sorted.len();
+        if sorted.len() < FEWEST_VALUES && !is_repeated {
             return None;
         }
         let gaps: Vec<f64> = sorted.windows(2).map(gap).collect();
@@ -58,7 +65,8 @@ impl Lattice {
         }
         let line = Line::through(&points);
         let misfit_steps = (line.squares() / points.len() as f64).sqrt() / line.slope;
-        (line.slope > 0.0 && misfit_steps <= LARGEST_MISFIT)
+        let most = if sorted.len() < FEWEST_VALUES { LARGEST_OF_FEW } else { LARGEST_MISFIT };
+        (line.slope > 0.0 && misfit_steps <= most)
             .then_some(Self { step: line.slope, misfit_steps })
     }
 }
@@ -92,6 +100,14 @@ mod tests {
     fn finds_none_in_continuous_values() {
         let values: Vec<f64> = wave(5000).collect();
         assert_eq!(Lattice::find(&values), None);
+    }
+
+    #[test]
+    fn finds_a_step_that_a_swing_passes_a_few_times() {
+        let values: Vec<f64> = wave(500).map(|x| (3.0 * x).round() * 0.2).collect();
+        assert!((Lattice::find(&values).unwrap().step / 0.2 - 1.0).abs() < 1e-9);
+        let levels: Vec<f64> = (0..500).map(|at| [0.0, 1.0, 1.3, 2.9, 4.5][at % 5]).collect();
+        assert_eq!(Lattice::find(&levels), None);
     }
 
     #[test]

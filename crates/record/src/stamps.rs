@@ -3,6 +3,7 @@
 use crate::line::{Bend, Line};
 use crate::lost::Numbers;
 use crate::roughness::preference_for_even;
+use std::borrow::Cow;
 
 /// Statistics of the stamps.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,14 +63,39 @@ pub(crate) fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
         .map(|scale| 1.0 / scale)
 }
 
+/// Share of repeated stamps up to which they are ties of stamps that scatter, and not bursts: a burst holds several
+/// samples.
+const TIES: f64 = 0.1;
+
+/// Returns stamps of which few repeat, with those moved apart by a quarter of the `rounding` that made them equal,
+/// or by half the way to the next one; returns bursts as they are.
+pub(crate) fn without_ties(stamps: &[f64], rounding: Option<f64>) -> Cow<'_, [f64]> {
+    let repeats = stamps.iter().zip(stamps.iter().skip(1)).filter(|(one, next)| one == next).count();
+    if repeats == 0 || repeats as f64 > TIES * stamps.len() as f64 {
+        return Cow::Borrowed(stamps);
+    }
+    let ends = stamps.chunk_by(|one, next| one == next);
+    let next = ends.clone().skip(1).map(<[f64]>::first).chain([None]);
+    let apart = ends.zip(next).flat_map(|(group, next)| {
+        let count = group.len() as f64;
+        group.iter().enumerate().map(move |(at, stamp)| {
+            let room = next.map_or(f64::INFINITY, |next| 0.5 * (next - stamp));
+            let step = rounding.map_or(room, |rounding| room.min(0.25 * rounding));
+            stamp + at as f64 / count * if step.is_finite() { step } else { 0.0 }
+        })
+    });
+    Cow::Owned(apart.collect())
+}
+
 /// Computes the statistics of the stamps from the numbers of the samples and the line through the groups'
-/// ends.
+/// ends. `rounding_s` is the [`stamp_rounding`].
 pub(crate) fn statistics(
     stamps: &[f64],
     values: &[f64],
     ends: &[(f64, f64)],
     numbers: &Numbers,
     line: &Line,
+    rounding_s: Option<f64>,
 ) -> StampStatistics {
     let steps: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1).collect();
     // Steps without the share of rows that hold no value.
@@ -82,7 +108,6 @@ pub(crate) fn statistics(
     let usual = middle(&own);
     let largest_group = stamps.chunk_by(|one, next| one == next).map(<[f64]>::len).max();
     let repeated = stamps.len() - ends.len();
-    let rounding_s = stamp_rounding(stamps);
     // Stamps that lie on no lattice are not rounded.
     let long = 1.5 * usual + rounding_s.unwrap_or_default().min(0.5 * usual);
     debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
@@ -192,6 +217,21 @@ mod tests {
         assert!((clock.statistics.bend_s / expected - 1.0).abs() < 1e-2, "{}", clock.statistics.bend_s);
         assert!(clock.statistics.bend_standard_errors > 100.0);
         assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
+    }
+
+    /// Stamps in milliseconds that scatter by a third of their interval: some are equal, and none is of a burst.
+    #[test]
+    fn ties_of_scattered_stamps_are_no_bursts() {
+        let mut stamps: Vec<f64> =
+            (0..2000).map(|index| ((index as f64 / 100.0 + 1.2e-2 * noise(index)) * 1e3).round() / 1e3).collect();
+        stamps.sort_by(f64::total_cmp);
+        let ties = stamps.windows(2).filter(|w| w[0] == w[1]).count();
+        assert!(ties > 5, "{ties}");
+        let found = of(stamps.into_iter());
+        assert_eq!(found.statistics.repeated, 0);
+        assert!(found.times_s.windows(2).all(|w| w[1] > w[0]), "{}", found.reason);
+        let bursts = of((0..2000).map(|index| f64::from(index / 4) * 0.04));
+        assert_eq!(bursts.statistics.repeated, 1500);
     }
 
     #[test]

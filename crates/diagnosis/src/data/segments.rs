@@ -294,7 +294,7 @@ fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
     let rest = median(last);
     let span = values.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
     // Without a stated resolution only the size of the motion counts.
-    let visible = (3.0 * record.resolution.unwrap_or(0.0)).max(VISIBLE * span);
+    let visible = (3.0 * record.resolution.unwrap_or(0.0)).min(0.5 * span).max(VISIBLE * span);
     let moving = times.iter().zip(values).rev().find(|(_, value)| (**value - rest).abs() > visible);
     // A motion that is never visible ends at time zero.
     moving.map_or(0.0, |(time, _)| *time)

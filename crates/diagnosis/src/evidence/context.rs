@@ -148,6 +148,16 @@ impl<'a> Context<'a> {
         Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
     }
 
+    /// Returns `true` if recalibration moves the rest angle by more than chance explains: a constant torque would do
+    /// the same.
+    pub(crate) fn moves_the_rest(&self, repaired: &Fit) -> bool {
+        let own = &repaired.hypothesis;
+        let Some(at) = own.calibrated.iter().position(|which| *which == Coefficient::RestAngle) else { return false };
+        let variance = repaired.squares / repaired.freedom() * self.time * entry(&repaired.inverse, at, at);
+        let moved = repaired.point.globals.get(at).map_or(0.0, |angle| angle - own.nominal.rest_angle());
+        moved.abs() > normal_above(0.5 * SHIFTED_BY_CHANCE) * variance.sqrt()
+    }
+
     /// Predicts held-out parts with the nominal simulator, with the recalibrated one (the nominal one, if
     /// recalibration predicts worse), and with the given sets. Sets whose motion cannot be simulated from
     /// parts of the data are left out.

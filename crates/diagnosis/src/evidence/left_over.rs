@@ -22,6 +22,7 @@ use crate::matrices::{element, entry};
 use crate::noise::high_pass::high_pass;
 use crate::noise::periodogram::below_images;
 use crate::noise::statistics::mean;
+use crate::residual::floor::without_rounding;
 use crate::residual::spectrum::steady;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
@@ -284,7 +285,8 @@ fn taken(
 /// # Errors
 /// Any [`DynamicsError`] of the simulation.
 pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, DynamicsError> {
-    let (spectrum, around) = outstanding(&bands(data, &fit.residuals));
+    let residuals = without_rounding(data, &fit.residuals);
+    let (spectrum, around) = outstanding(&bands(data, &residuals));
     // If the spectrum has no bands beside the swing's, the whole residual counts as noise.
     let whole =
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
@@ -294,10 +296,10 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));
     let period = TAU / slowest(data);
     let filter = |values: &mut [f64]| without_drifts(data, period, values);
-    let mut residual: Vec<f64> = fit.stacked().collect();
+    let mut residual: Vec<f64> = residuals.iter().flat_map(|own| own.iter().copied()).collect();
     filter(&mut residual);
     let residual = DVector::from_vec(residual);
-    let residuals: Vec<&[f64]> = fit.residuals.iter().map(DVector::as_slice).collect();
+    let residuals: Vec<&[f64]> = residuals.iter().map(DVector::as_slice).collect();
     let line = standing(&steady(data, &residuals).gains);
     let mut found = if line.evidence > spectrum.evidence { line } else { spectrum };
     for acting in [Acting::Torque, Acting::Sensor] {

@@ -48,6 +48,7 @@ pub(crate) struct Parts<'a> {
     pub(crate) left_over: f64,
     pub(crate) calibrated_off: bool,
     pub(crate) shift: Option<Shift>,
+    pub(crate) is_shifted: bool,
     pub(crate) rivals: &'a [Rivalry],
     pub(crate) findings: &'a [Finding],
 }
@@ -296,6 +297,9 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     } else {
         Status::None
     };
+    if status == Status::Calibration && parts.is_shifted {
+        equivalent.push(vec!["calibration", "constant_torque"]);
+    }
     Verdict { status, effects, confidence: confidence(parts, status), left_over: parts.left_over, equivalent }
 }
 

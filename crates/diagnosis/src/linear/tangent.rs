@@ -91,7 +91,7 @@ impl Path {
                 // Without an input there is no torque.
                 .map(|time| input.map_or(0.0, |input| gain * input.at(*time)))
                 .collect();
-            let (x, rate, curvature) = observed(data.quantity, &motion);
+            let (x, rate, _) = observed(data.quantity, &motion);
             // Every series has an entry for each sample.
             let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(0.0);
             let slopes = x
@@ -99,9 +99,7 @@ impl Path {
                 .zip(&segment.times)
                 .enumerate()
                 .map(|(index, (x, time))| {
-                    let (rate, curvature) = (at(rate, index), at(curvature, index));
-                    let [slope, ..] = measurement.observe(*x, rate, curvature, *time, 0.0).by_motion;
-                    slope
+                    measurement.observe([*x, 0.0], at(rate, index), *time, 0.0).slope
                 })
                 .collect();
             let mut path = Self {

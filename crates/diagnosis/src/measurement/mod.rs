@@ -5,3 +5,4 @@ pub(crate) mod clock_rates;
 pub(crate) mod encoder_hysteresis;
 pub(crate) mod outliers;
 pub(crate) mod signatures;
+pub(crate) mod stale;

@@ -1,6 +1,7 @@
 //! Detection of isolated wrong samples by comparison with the samples around them.
 
 use crate::data::observations::Observations;
+use crate::measurement::stale::stale;
 use crate::noise::statistics::{median, normal_above};
 
 /// Probability that Gaussian noise alone produces an outlier in a record.
@@ -34,8 +35,8 @@ const BY_CHANCE: f64 = 3.0;
 /// Maximum number of rounds, because a wrong sample hides another within its neighborhood.
 const ROUNDS: usize = 3;
 
-/// Marks the samples to keep. Isolated samples that the motion around them does not support are left out of
-/// every fit.
+/// Marks the samples to keep. Stale readings, and isolated samples that the motion around them does not support,
+/// are left out of every fit.
 ///
 /// A sample is compared with the cubic through its four neighbors, at the times of the chosen clock, in units
 /// of the noise of that distance. The noise is the median absolute distance (times 1.4826, the Gaussian's
@@ -50,7 +51,7 @@ const ROUNDS: usize = 3;
 ///
 /// The time is linear in the number of samples.
 pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
-    let everything = vec![true; observations.len()];
+    let everything: Vec<bool> = stale(observations).iter().map(|stale| !stale).collect();
     if observations.stamps.repeated > 0 && observations.stamps.lost > 0 {
         return everything;
     }
@@ -66,7 +67,7 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
             break;
         }
     }
-    let dropped = kept.iter().filter(|kept| !**kept).count() as f64;
+    let dropped = kept.iter().zip(&everything).filter(|(kept, fresh)| **fresh && !**kept).count() as f64;
     let most = MOST * observations.len() as f64;
     if dropped > most + BY_CHANCE * most.sqrt() { everything } else { kept }
 }

@@ -7,6 +7,7 @@ use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 pub(crate) use crate::measurement::outliers::kept;
 use crate::measurement::outliers::white_noise;
+use crate::measurement::stale::stale;
 use crate::noise::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
 use record::{ClockKind, StampStatistics, counted, two_digits};
@@ -35,7 +36,9 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
     let is_blind = observations.input.is_some() && observations.input_rows.is_empty();
     findings.extend(dropouts(stamps, is_blind));
     findings.extend(errors_of_stamps(observations, kept));
-    let outliers = kept.iter().filter(|kept| !**kept).count();
+    let stale = stale(observations);
+    findings.extend(repeats(&stale));
+    let outliers = kept.iter().zip(&stale).filter(|(kept, stale)| !**kept && !**stale).count();
     if outliers > 0 {
         findings.push(Finding {
             effect: Some("outliers"),
@@ -77,6 +80,24 @@ pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<F
              the noise"
         ),
     })
+}
+
+/// Share of stale readings from which on the sensor is slower than the log, and nothing drops out.
+const SLOWER: f64 = 0.5;
+
+/// Returns a finding if readings are stale.
+fn repeats(stale: &[bool]) -> Option<Finding> {
+    let (all, found) = (stale.len(), stale.iter().filter(|stale| **stale).count());
+    if found == 0 {
+        return None;
+    }
+    let text = format!("{found} of {all} readings repeat the one before while the body moves: they are stale, and left out");
+    if found as f64 > SLOWER * all as f64 {
+        let rows = all as f64 / (all - found) as f64;
+        let text = format!("{text}; the sensor has a new reading every {rows:.1} rows");
+        return Some(Finding { effect: None, text });
+    }
+    Some(Finding { effect: Some("dropouts"), text })
 }
 
 const UNDRIVEN: &str = "; the input is missing there too, so its effect in the meantime stays unexplained";

@@ -5,6 +5,7 @@ pub(crate) mod candidates;
 pub(crate) mod contact;
 pub(crate) mod encoder_hysteresis;
 pub(crate) mod hypothesis;
+pub(crate) mod lag;
 pub(crate) mod predictor;
 pub(crate) mod sensor;
 pub(crate) mod vocabulary;

@@ -7,6 +7,7 @@ use crate::model::candidate::Candidate;
 use crate::model::contact::{Bent, bent};
 use crate::model::encoder_hysteresis::readings;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Source};
+use crate::model::lag::Lag;
 use crate::model::sensor::{Observed, Sensor};
 use dynamics::DynamicsError;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
@@ -86,12 +87,20 @@ pub(crate) struct Motion {
 }
 
 /// Observed quantity along a motion, with its derivatives by all free quantities: values, rates and
-/// curvatures by rows. The third derivative of the position is not integrated: an effect that needs it is
-/// expanded to one order less, or is not fitted.
+/// curvatures by rows. The third derivative of the position is not integrated; where it is needed, it counts as
+/// zero.
 struct Seen<'r> {
     motion: [&'r [f64]; 3],
     by_free: [&'r [f64]; 3],
     columns: usize,
+    lagged: Option<Lagged>,
+}
+
+/// The quantity after the sensor's lag, its derivatives by the time constant, and those by each free quantity.
+struct Lagged {
+    values: Vec<f64>,
+    by_constant: Vec<f64>,
+    by_free: Vec<Vec<f64>>,
 }
 
 impl<'r> Seen<'r> {
@@ -110,25 +119,45 @@ impl<'r> Seen<'r> {
         let from = |all: [&'r Vec<f64>; 3]| {
             [0, 1, 2].map(|derivative| all.get(order + derivative).map_or(&[][..], |list| list.as_slice()))
         };
-        Self { motion: from(motion), by_free: from(by_free), columns: response.columns }
+        Self { motion: from(motion), by_free: from(by_free), columns: response.columns, lagged: None }
     }
 
-    fn at(&self, row: usize) -> [f64; 3] {
+    /// Returns the same as a sensor with a lag sees it.
+    fn through(self, lag: &Lag) -> Self {
         // A response has an entry for every row; derivatives that it lacks count as zero.
-        self.motion.map(|list| list.get(row).copied().unwrap_or(0.0))
+        let of = |lists: [&'r [f64]; 3], index: usize| {
+            let [value, others @ ..] = lists;
+            let [rate, curvature] = others.map(|list| list.get(index).copied().unwrap_or(0.0));
+            Some([*value.get(index)?, rate, curvature])
+        };
+        let motion = |row: usize| of(self.motion, row);
+        let column = |own: usize| lag.of(&|row| of(self.by_free, row * self.columns + own));
+        let lagged = Lagged {
+            values: lag.of(&motion),
+            by_constant: lag.by_constant(&motion),
+            by_free: (0..self.columns).map(column).collect(),
+        };
+        Self { lagged: Some(lagged), ..self }
     }
 
-    /// Returns the derivative of a reading by the free quantity of a column, given the reading's derivatives
-    /// by the motion.
-    fn through(&self, [d0, d1, d2]: [f64; 3], row: usize, column: usize) -> f64 {
-        // As in `at`.
-        let of = |list: &[f64]| list.get(row * self.columns + column).copied().unwrap_or(0.0);
-        let [by_value, by_rate, by_curvature] = self.by_free;
-        let mut sum = d0 * of(by_value);
-        if d1 != 0.0 {
-            sum += d1 * of(by_rate) + d2 * of(by_curvature);
-        }
-        sum
+    /// Returns the quantity after the lag with its derivative by the time constant, and its rate.
+    fn at(&self, row: usize) -> ([f64; 2], f64) {
+        // As above.
+        let of = |list: &[f64]| list.get(row).copied().unwrap_or(0.0);
+        let [value, rate, _] = self.motion.map(of);
+        let read = self.lagged.as_ref().map(|own| [of(&own.values), of(&own.by_constant)]);
+        (read.unwrap_or([value, 0.0]), rate)
+    }
+
+    /// Returns the derivative by the free quantity of a column.
+    fn by(&self, row: usize, column: usize) -> f64 {
+        let [by_value, ..] = self.by_free;
+        let own = match &self.lagged {
+            Some(lagged) => lagged.by_free.get(column).and_then(|own| own.get(row)),
+            None => by_value.get(row * self.columns + column),
+        };
+        // As above.
+        own.copied().unwrap_or(0.0)
     }
 }
 
@@ -310,13 +339,16 @@ impl<'a> Simulator<'a> {
         let count = segment.times.len();
         let mut residual = DVector::zeros(count);
         let mut jacobian = DMatrix::zeros(count, width);
-        let seen = Seen::new(&self.response, self.data.quantity);
+        let mut seen = Seen::new(&self.response, self.data.quantity);
+        if let Some(constant) = self.measurement.lag {
+            seen = seen.through(&Lag::new(constant, &self.times, self.facts().frequency));
+        }
         let bends_by = self.bends_by(segment, start);
         // A segment has samples; without any no row is read.
         let start_time = segment.times.first().copied().unwrap_or_default();
         for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
-            let [x, rate, curvature] = seen.at(row);
-            let observed = self.measurement.observe(x, rate, curvature, time, start_time);
+            let (x, rate) = seen.at(row);
+            let observed = self.measurement.observe(x, rate, time, start_time);
             if let Some(slot) = residual.get_mut(row) {
                 *slot = value - observed.value;
             }
@@ -344,12 +376,12 @@ impl<'a> Simulator<'a> {
         jacobian: &mut DMatrix<f64>,
     ) {
         for column in 0..starts {
-            set(jacobian, row, column, seen.through(observed.by_motion, row, column));
+            set(jacobian, row, column, observed.slope * seen.by(row, column));
         }
         let own = if self.derivatives == Derivatives::All { self.sources.as_slice() } else { &[] };
         for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
             let value = match (column, *source) {
-                (Some(column), _) => seen.through(observed.by_motion, row, *column),
+                (Some(column), _) => observed.slope * seen.by(row, *column),
                 (None, Source::Effect(index, parameter)) => {
                     let effect = self.hypothesis.effect(index);
                     let which = effect.and_then(|effect| effect.sensor_derivative(parameter));
@@ -372,7 +404,7 @@ impl<'a> Simulator<'a> {
         jacobian: &mut DMatrix<f64>,
     ) {
         let Some(column) = self.contact.and_then(|contact| contact.column) else { return };
-        let moved = seen.through(observed.by_motion, row, column);
+        let moved = observed.slope * seen.by(row, column);
         for &(column, by) in bends_by {
             let known = entry(jacobian, row, column);
             set(jacobian, row, column, known + by * moved);

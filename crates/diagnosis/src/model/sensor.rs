@@ -3,6 +3,7 @@
 /// Smooth effects of the measurement chain on a reading, in their physical order.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Sensor {
+    /// Time constant; it is no map of a single value: [`crate::model::lag`].
     pub(crate) lag: Option<f64>,
     pub(crate) nonlinearity: Option<(f64, f64)>,
     pub(crate) drift: Option<f64>,
@@ -18,8 +19,8 @@ pub(crate) struct Sensor {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Observed {
     pub(crate) value: f64,
-    /// Derivatives by the observed quantity, its first and its second time derivative.
-    pub(crate) by_motion: [f64; 3],
+    /// Derivative by the observed quantity, as it is after the lag.
+    pub(crate) slope: f64,
     /// Derivatives by the sensor's parameters, at the indices below.
     pub(crate) by_parameter: [f64; 7],
 }
@@ -43,27 +44,20 @@ impl Sensor {
         self.clock.map_or(stamp, |change| 2.0 * stamp / (1.0 + (1.0 + 2.0 * change * stamp).max(0.0).sqrt()))
     }
 
-    /// Computes the reading for an observed quantity `x` with time derivatives `rate` and `curvature`.
-    ///
-    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. It agrees with the
-    /// low-pass's own answer up to (ω·T)³.
-    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
-        let mut by_motion = [1.0, 0.0, 0.0];
+    /// Computes the reading for an observed quantity `x` after the lag, with its derivative by the lag and its
+    /// rate.
+    pub(crate) fn observe(&self, [x, by_constant]: [f64; 2], rate: f64, time: f64, start: f64) -> Observed {
+        let mut slope = 1.0;
         let mut by_parameter = [0.0; 7];
         let [by_lag, by_amplitude, by_phase, by_drift, by_clock, ..] = &mut by_parameter;
         let mut value = x;
-        if let Some(lag) = self.lag {
-            value += -lag * rate + lag * lag * curvature;
-            by_motion = [1.0, -lag, lag * lag];
-            *by_lag = -rate + 2.0 * lag * curvature;
-        }
+        *by_lag = by_constant;
         // dt/dr′ at a given stamp, less that at the start, because the start state moves along.
         *by_clock = -0.5 * (time * time - start * start) * rate;
         if let Some((amplitude, phase)) = self.nonlinearity {
             let (sine, cosine) = (value + phase).sin_cos();
             value += amplitude * sine;
-            let slope = 1.0 + amplitude * cosine;
-            by_motion = by_motion.map(|d| d * slope);
+            slope = 1.0 + amplitude * cosine;
             *by_lag *= slope;
             *by_clock *= slope;
             *by_amplitude = sine;
@@ -78,12 +72,12 @@ impl Sensor {
         {
             let side = (value - center).signum();
             value = center + bound * side;
-            by_motion = [0.0; 3];
+            slope = 0.0;
             by_parameter = [0.0; 7];
             let [.., by_bound, by_center] = &mut by_parameter;
             (*by_bound, *by_center) = (side, 1.0);
         }
-        Observed { value, by_motion, by_parameter }
+        Observed { value, slope, by_parameter }
     }
 }
 
@@ -95,41 +89,37 @@ mod tests {
     #[test]
     fn a_sensors_derivatives_are_those_of_its_values() {
         let full = Sensor {
-            lag: Some(0.004),
+            lag: None,
             nonlinearity: Some((0.02, 0.4)),
             drift: Some(0.003),
             clock: Some(1e-3),
             saturation: Some((5.0, 0.1)),
             reading: None,
         };
-        let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
-        let at = full.observe(x, rate, curvature, time, 0.0);
+        let (x, rate, time) = (0.3, -2.0, 7.0);
+        let at = full.observe([x, 1.0], rate, time, 0.0);
         let h = 1e-6;
         let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
-        let by_x = slope(
-            full.observe(x + h, rate, curvature, time, 0.0).value,
-            full.observe(x - h, rate, curvature, time, 0.0).value,
-        );
-        assert!((by_x - at.by_motion[0]).abs() < 1e-8);
-        let lag =
-            |d: f64| Sensor { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value;
-        assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
+        let by_x =
+            slope(full.observe([x + h, 1.0], rate, time, 0.0).value, full.observe([x - h, 1.0], rate, time, 0.0).value);
+        assert!((by_x - at.slope).abs() < 1e-8);
+        assert!((at.by_parameter[Observed::BY_LAG] - at.slope).abs() < 1e-12);
         let phase = |d: f64| {
             Sensor { nonlinearity: Some((0.02, 0.4 + d)), ..full }
-                .observe(x, rate, curvature, time, 0.0)
+                .observe([x, 1.0], rate, time, 0.0)
                 .value
         };
         assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
         for side in [-1.0, 1.0] {
             let clipped = |bound: f64, center: f64| {
-                Sensor { saturation: Some((bound, center)), ..full }.observe(side, rate, curvature, time, 0.0)
+                Sensor { saturation: Some((bound, center)), ..full }.observe([side, 1.0], rate, time, 0.0)
             };
             let at = clipped(0.2, 0.05);
             let by_bound = slope(clipped(0.2 + h, 0.05).value, clipped(0.2 - h, 0.05).value);
             let by_center = slope(clipped(0.2, 0.05 + h).value, clipped(0.2, 0.05 - h).value);
             assert!((by_bound - at.by_parameter[Observed::BY_BOUND]).abs() < 1e-8);
             assert!((by_center - at.by_parameter[Observed::BY_CENTER]).abs() < 1e-8);
-            assert_eq!(at.by_motion, [0.0; 3]);
+            assert_eq!(at.slope, 0.0);
         }
         let stamp = full.true_time(time);
         assert!((stamp + 0.5 * 1e-3 * stamp * stamp - time).abs() < 1e-12);

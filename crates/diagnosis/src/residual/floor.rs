@@ -1,7 +1,7 @@
 //! Noise floor, measured from a residual.
 
-use crate::data::segments::Data;
-use crate::noise::rounding;
+use crate::data::segments::{Data, Segment};
+use crate::noise::rounding::{Rounded, rounded};
 use crate::noise::statistics::{normal_above, sixths};
 use nalgebra::DVector;
 use serde::Serialize;
@@ -48,17 +48,30 @@ pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
 /// it. Their mean is the variance of a sample; the effect of rounding is corrected.
 pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option<f64>>> {
     let mut squares: Vec<_> = residuals.iter().map(|residual| sixths(residual.as_slice())).collect();
-    if let Some(step) = data.resolution {
-        let pieces: Vec<(&[f64], &[f64])> = data
-            .segments
-            .iter()
-            .zip(residuals)
-            .map(|(segment, residual)| (segment.values.as_slice(), residual.as_slice()))
-            .collect();
-        let factor = rounding::factor(&pieces, step, of_squares(&squares).value);
+    if let Some(rounded) = rounded_as(data, residuals, &squares) {
         for square in squares.iter_mut().flatten().flatten() {
-            *square *= factor;
+            *square *= rounded.factor;
         }
     }
     squares
+}
+
+/// Returns what the sensor's steps do to the readings; `None` if it has none.
+fn rounded_as(data: &Data, residuals: &[DVector<f64>], squares: &[Vec<Option<f64>>]) -> Option<Rounded> {
+    let pieces = data.segments.iter().zip(residuals);
+    let pieces: Vec<(&[f64], &[f64])> =
+        pieces.map(|(segment, residual)| (segment.values.as_slice(), residual.as_slice())).collect();
+    rounded(&pieces, data.resolution?, of_squares(squares).value)
+}
+
+/// Returns the residual without the mean error of rounding, which depends on the position alone. Where the noise
+/// is far below the sensor's steps, that is most of the residual.
+pub(crate) fn without_rounding(data: &Data, residuals: &[DVector<f64>]) -> Vec<DVector<f64>> {
+    let squares: Vec<_> = residuals.iter().map(|residual| sixths(residual.as_slice())).collect();
+    let Some(rounded) = rounded_as(data, residuals, &squares) else { return residuals.to_vec() };
+    let of = |(segment, residual): (&Segment, &DVector<f64>)| {
+        let pairs = residual.iter().zip(&segment.values);
+        DVector::from_iterator(residual.len(), pairs.map(|(error, value)| error - rounded.bias(value - error)))
+    };
+    data.segments.iter().zip(residuals).map(of).collect()
 }

@@ -27,6 +27,8 @@ pub(crate) struct Judged<'a> {
     pub(crate) held: Held<'a>,
     /// Constant torque that explains the whole recalibration.
     pub(crate) shift: Option<Shift>,
+    /// `true` if a constant torque would explain a part of the recalibration as well.
+    pub(crate) is_shifted: bool,
 }
 
 impl<'a> Judged<'a> {
@@ -74,6 +76,7 @@ impl<'a> Judged<'a> {
         let has_one = chosen.iter().any(|own| own.id() == "constant_torque");
         let considers = request.settings.considers("constant_torque") && !has_one;
         let shift = if considers { work.shift(held.repaired) } else { None };
-        Ok(Self { inclusion, classes, held, shift })
+        let is_shifted = considers && chosen.is_empty() && work.moves_the_rest(held.repaired);
+        Ok(Self { inclusion, classes, held, shift, is_shifted })
     }
 }

@@ -56,6 +56,7 @@ pub(crate) fn answer<'a>(
         left_over: remaining.left_over,
         calibrated_off: refined.base.is_off(),
         shift: judged.shift,
+        is_shifted: judged.is_shifted,
         rivals: &rivals,
         findings: &measuring_chain.findings,
     };

@@ -62,6 +62,7 @@ mod timestamp_jitter;
 pub use crate::units::Observed;
 pub use clock_drift::ClockDrift;
 pub use dropouts::Dropouts;
+pub use low_pass::LowPass;
 pub use measuring::{Chain, transform};
 pub use outliers::Outliers;
 pub use sensor_drift::SensorDrift;

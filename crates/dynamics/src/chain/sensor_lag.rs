@@ -1,6 +1,6 @@
 //! Sensor that follows with a lag.
 
-use super::low_pass;
+use super::low_pass::{self, LowPass};
 use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
@@ -98,7 +98,7 @@ impl Step for SensorLag {
 
 fn lagged_velocity<S: Sampled>(time_constant: S, motion: &SampledMotion<'_, S>, first: S) -> Vec<S> {
     let end = |at: usize| Some([*motion.velocity.get(at)?, *motion.acceleration.get(at)?]);
-    low_pass::cubic(time_constant, motion.times_s, end, first)
+    LowPass::new(time_constant, motion.times_s).of(end, first)
 }
 
 #[cfg(test)]
