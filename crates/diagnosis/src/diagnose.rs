@@ -215,6 +215,39 @@ mod tests {
         assert_eq!(answer.verdict.effects, ["quadratic_drag"]);
     }
 
+    /// A torque in steps, read by a sensor with a lag of a sixth of a radian. Between readings the lag is run in
+    /// forty steps, each exact for a straight motion.
+    #[test]
+    fn a_lag_is_no_delay() {
+        let (nominal, constant) = (Nominal::new(1.0, 1.0, 200.0, 0.0).unwrap(), 0.012);
+        let system = System::new(nominal, Vec::new()).unwrap();
+        let fine: Vec<f64> = (0..80_000).map(|at| f64::from(at) / 4000.0).collect();
+        let level = |step: usize| 60.0 * (12.9 * step as f64).sin();
+        let torque: Vec<f64> = (0..2000).map(|at| if at < 30 { 0.0 } else { level(at / 30) }).collect();
+        let times: Vec<f64> = fine.iter().copied().step_by(40).collect();
+        let input = Input::new(times.clone(), torque.clone(), Hold::Zero).unwrap();
+        let (start, tolerance) = (Start::release(0.0), Tolerance::default());
+        let motion = simulate(&system, start, Some(&input), &fine, &tolerance).unwrap();
+        let keep = (-1.0 / 4000.0_f64 / constant).exp();
+        let mut reading = 0.0;
+        let read = motion.position.windows(2).map(|ends| {
+            let behind = constant * 4000.0 * (ends[1] - ends[0]);
+            reading = ends[1] - behind + (reading - ends[0] + behind) * keep;
+            reading
+        });
+        let read: Vec<f64> = std::iter::once(0.0).chain(read).step_by(40).collect();
+        let mut generator = Seed::new(5).child("noise").generator();
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        let values = read.iter().map(|x| x + 1e-3 * noise()).collect();
+        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
+        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        assert_eq!(answer.verdict.effects, ["sensor_lag"]);
+        let found = answer.effects.iter().find(|row| row.id == "sensor_lag").unwrap();
+        let found = found.parameters.first().unwrap().estimate.value;
+        assert!((found / constant - 1.0).abs() < 0.03, "{found}");
+    }
+
     /// The closest linear oscillator is one that the input does not move: no set begun there converges. An
     /// input with as few knots as this oscillator allows distorts the sets that do.
     #[test]

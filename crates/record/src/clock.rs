@@ -206,8 +206,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
         );
         return (ClockKind::IndexWithGaps, reason);
     }
-    let is_scatter = found.lost == 0 && found.gaps as f64 > SELDOM * stamps.len() as f64 && preference > SIGNIFICANT;
-    if found.gaps > 0 && !is_scatter {
+    if found.gaps > 0 {
         let reason = format!(
             "{} of more than 1.5 times the median step: samples are missing, so the index is not a clock",
             counted(found.gaps, "gap"),
@@ -259,12 +258,8 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
 /// values show.
 const EVEN: f64 = 1e-6;
 
-/// Share of long steps beyond which scatter of the stamps makes them, if the values agree and no loss is found:
-/// stamps that scatter by an interval and are sorted have long steps everywhere.
-const SELDOM: f64 = 0.05;
-
 /// Number of standard errors that a preference must exceed: 1 % by chance, one-sided.
-const SIGNIFICANT: f64 = 2.33;
+pub(crate) const SIGNIFICANT: f64 = 2.33;
 
 /// Returns the row number and the stamp of the last sample of each group of equal stamps. The record's last
 /// group may be cut off, so that its last sample need not be the least late; with many groups this does not
@@ -309,7 +304,8 @@ mod tests {
         let mut stamps: Vec<f64> =
             times.iter().enumerate().map(|(index, time)| time + 3e-2 * noise(index)).collect();
         stamps.sort_by(f64::total_cmp);
-        let values = times.iter().enumerate().map(|(at, t)| (6.0 * t).sin() + 2e-3 * noise(7 * at + 1)).collect();
+        let values =
+            times.iter().enumerate().map(|(at, t)| (6.0 * t).sin() + 2e-3 * noise(7 * at + 1)).collect();
         let record = Record::new(stamps, values, None, Quantity::Position, "rad").unwrap();
         let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
         assert_eq!(clock.kind, ClockKind::UniformIndex, "{} {:?}", clock.reason, clock.statistics);

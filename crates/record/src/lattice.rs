@@ -66,8 +66,7 @@ impl Lattice {
         let line = Line::through(&points);
         let misfit_steps = (line.squares() / points.len() as f64).sqrt() / line.slope;
         let most = if sorted.len() < FEWEST_VALUES { LARGEST_OF_FEW } else { LARGEST_MISFIT };
-        (line.slope > 0.0 && misfit_steps <= most)
-            .then_some(Self { step: line.slope, misfit_steps })
+        (line.slope > 0.0 && misfit_steps <= most).then_some(Self { step: line.slope, misfit_steps })
     }
 }
 

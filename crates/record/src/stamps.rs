@@ -1,5 +1,6 @@
 //! Statistics of a record's stamps.
 
+use crate::clock::SIGNIFICANT;
 use crate::line::{Bend, Line};
 use crate::lost::Numbers;
 use crate::roughness::preference_for_even;
@@ -63,6 +64,10 @@ pub(crate) fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
         .map(|scale| 1.0 / scale)
 }
 
+/// Share of long steps beyond which scatter of the stamps makes them, if the values agree and no loss is found:
+/// stamps that scatter by an interval and are sorted have long steps everywhere.
+const SELDOM: f64 = 0.05;
+
 /// Share of repeated stamps up to which they are ties of stamps that scatter, and not bursts: a burst holds several
 /// samples.
 const TIES: f64 = 0.1;
@@ -115,13 +120,17 @@ pub(crate) fn statistics(
     let whole = numbers.ends.get(..ends.len() - usize::from(repeated > 0)).unwrap_or_default();
     let bend = Bend::of(&Line::through(whole), whole);
     let even: Vec<f64> = numbers.of_samples.iter().map(|number| line.slope * number).collect();
+    let preference = if repeated == 0 { preference_for_even(stamps, values, &even) } else { 0.0 };
+    let gaps = if repeated == 0 { gaps(&own, usual, long) } else { 0 };
+    let is_scatter =
+        numbers.lost == 0 && gaps as f64 > SELDOM * stamps.len() as f64 && preference > SIGNIFICANT;
     StampStatistics {
         repeated,
         groups: ends.len(),
         // A record has samples, so there is a group.
         largest_group: largest_group.unwrap_or_default(),
         group_interval_s: middle(&steps),
-        gaps: if repeated == 0 { gaps(&own, usual, long) } else { 0 },
+        gaps: if is_scatter { 0 } else { gaps },
         rounding_s,
         lost: numbers.lost,
         deviation_s: (line.squares() / ends.len() as f64).sqrt(),
@@ -130,7 +139,7 @@ pub(crate) fn statistics(
         bend_s: bend.size,
         bend_standard_errors: bend.standard_errors,
         left_by_bend_s: bend.line.residuals.iter().fold(0.0, |most, r| f64::max(most, r.abs())),
-        preference_for_even: if repeated == 0 { preference_for_even(stamps, values, &even) } else { 0.0 },
+        preference_for_even: preference,
     }
 }
 
@@ -222,8 +231,9 @@ mod tests {
     /// Stamps in milliseconds that scatter by a third of their interval: some are equal, and none is of a burst.
     #[test]
     fn ties_of_scattered_stamps_are_no_bursts() {
-        let mut stamps: Vec<f64> =
-            (0..2000).map(|index| ((index as f64 / 100.0 + 1.2e-2 * noise(index)) * 1e3).round() / 1e3).collect();
+        let mut stamps: Vec<f64> = (0..2000)
+            .map(|index| ((index as f64 / 100.0 + 1.2e-2 * noise(index)) * 1e3).round() / 1e3)
+            .collect();
         stamps.sort_by(f64::total_cmp);
         let ties = stamps.windows(2).filter(|w| w[0] == w[1]).count();
         assert!(ties > 5, "{ties}");

@@ -391,8 +391,31 @@ fn speed(records: &[Observations]) -> f64 {
     quantile(&speeds, 0.95).max(f64::MIN_POSITIVE)
 }
 
+/// Frequencies that a segment may begin with, over that of the records, and the share of the usual one's squares
+/// that another has to come below.
+const LOCAL: [f64; 8] = [0.4, 0.55, 0.7, 0.85, 1.2, 1.45, 1.8, 2.2];
+const CLOSER: f64 = 0.5;
+
+/// Fits an offset and a wave of an angular frequency to points, or a parabola without one. Returns offset, cosine
+/// and sine (or the parabola's coefficients), and the sum of squares that is left.
+fn wave(points: &[(f64, f64)], omega: Option<f64>) -> ([f64; 3], f64) {
+    let columns = |time: f64| match omega {
+        Some(omega) => [1.0, (omega * time).cos(), (omega * time).sin()],
+        None => [1.0, time, time * time],
+    };
+    let design = nalgebra::DMatrix::from_fn(points.len(), 3, |row, column| {
+        // Rows and columns are those of the points.
+        points.get(row).and_then(|(time, _)| columns(*time).get(column).copied()).unwrap_or(0.0)
+    });
+    let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));
+    let svd = design.clone().svd(true, true);
+    let fit = svd.solve(&right, 1e-12).unwrap_or_else(|_| nalgebra::DVector::zeros(3));
+    ([0, 1, 2].map(|index| element(&fit, index)), (right - design * fit).norm_squared())
+}
+
 /// Estimates position and velocity at the start of a segment: from a harmonic with an offset through its
-/// first period, or from a parabola through its first samples if nothing swings.
+/// first period, or from a parabola through its first samples if nothing swings. The harmonic has the frequency
+/// of the records, or one of its [`LOCAL`] multiples if that leaves far less.
 fn guess(
     times: &[f64],
     values: &[f64],
@@ -418,17 +441,15 @@ fn guess(
         .take_while(|(index, (time, _))| *index < 6 || *time <= reach)
         .map(|(_, point)| point)
         .collect();
-    let columns = |time: f64| match period_s {
-        Some(_) => [1.0, (omega * time).cos(), (omega * time).sin()],
-        None => [1.0, time, time * time],
-    };
-    let design = nalgebra::DMatrix::from_fn(points.len(), 3, |row, column| {
-        // Rows and columns are those of the points.
-        points.get(row).and_then(|(time, _)| columns(*time).get(column).copied()).unwrap_or(0.0)
-    });
-    let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));
-    let fit = design.svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| nalgebra::DVector::zeros(3));
-    let [offset, cosine, sine] = [0, 1, 2].map(|index| element(&fit, index));
+    // A law far from a spring's has other frequencies at other amplitudes.
+    let tried = LOCAL.map(|factor| (factor * omega, wave(&points, period_s.map(|_| factor * omega))));
+    let own = wave(&points, period_s.map(|_| omega));
+    let (omega, (coefficients, _)) = tried
+        .into_iter()
+        .filter(|(_, (_, squares))| *squares < CLOSER * own.1)
+        .min_by(|a, b| a.1.1.total_cmp(&b.1.1))
+        .unwrap_or((omega, own));
+    let [offset, cosine, sine] = coefficients;
     match (quantity, period_s.is_some()) {
         (Quantity::Position, true) => [offset + cosine, omega * sine],
         (Quantity::Position, false) => [offset, cosine],

@@ -152,7 +152,9 @@ impl<'a> Context<'a> {
     /// the same.
     pub(crate) fn moves_the_rest(&self, repaired: &Fit) -> bool {
         let own = &repaired.hypothesis;
-        let Some(at) = own.calibrated.iter().position(|which| *which == Coefficient::RestAngle) else { return false };
+        let Some(at) = own.calibrated.iter().position(|which| *which == Coefficient::RestAngle) else {
+            return false;
+        };
         let variance = repaired.squares / repaired.freedom() * self.time * entry(&repaired.inverse, at, at);
         let moved = repaired.point.globals.get(at).map_or(0.0, |angle| angle - own.nominal.rest_angle());
         moved.abs() > normal_above(0.5 * SHIFTED_BY_CHANCE) * variance.sqrt()

@@ -318,8 +318,14 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
 #[cfg(test)]
 mod tests {
     use super::{Band, HARMONICS, SWING, WORTH, larger, outstanding, periodogram, standing};
+    use crate::answer::Status;
+    use crate::fixtures::record;
     use crate::noise::periodogram::add;
+    use crate::{Observations, Settings, diagnose};
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
     use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice};
 
     #[test]
     fn equal_variances_say_nothing_and_unequal_ones_much() {
@@ -387,5 +393,20 @@ mod tests {
             };
             assert!(evidence(&mut walk) < 1.0);
         }
+    }
+
+    /// A swing that spans ten steps of its sensor: the errors of rounding follow the motion, and are no noise.
+    #[test]
+    fn rounding_to_a_few_steps_leaves_nothing_unknown() {
+        let nominal = Nominal::new(1.0, 0.1, 120.0, 0.0).unwrap();
+        let coarse = Active::new("sensor_quantization", &[0.16]).unwrap();
+        let chain = Chain::new(Observed::Position, 3e-3, vec![coarse]).unwrap();
+        let record = record(&System::new(nominal, Vec::new()).unwrap(), 0.8, 3000, &chain, 3);
+        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        assert_eq!(
+            (answer.verdict.status, answer.verdict.effects),
+            (Status::Effect, vec!["sensor_quantization"])
+        );
     }
 }

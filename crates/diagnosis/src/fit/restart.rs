@@ -3,8 +3,8 @@
 //! With dry friction and stops, a segment's sum of squares is uneven in its start state, because the number
 //! of half swings before it sticks is a whole number. A step for all segments together can leave a single one
 //! behind in a local minimum, and that one then holds back the coefficients. So each segment may begin again
-//! from several start states: its present one, the guess from its first samples, rest at its mean value, or
-//! the end of the segment before it.
+//! from several start states: its present one, the guess from its first samples, rest at its mean value, the end
+//! of the segment before it, or a fit to longer and longer beginnings of it.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Point, extended};
@@ -59,20 +59,31 @@ pub(crate) fn settle(
         let arriving = arriving.map(|state| extended(&state, hypothesis));
         let far_off = FAR_OFF * prediction.residual.norm_squared();
         let mut begun = vec![(start.clone(), prediction.clone())];
-        for from in [guess, rest].into_iter().chain(arriving) {
+        for from in [guess.clone(), rest].into_iter().chain(arriving) {
             let Ok(at) = simulator.predict(segment, &from) else { continue };
             if at.residual.norm_squared() < far_off {
                 begun.push((from, at));
             }
         }
         let mut least = prediction.residual.norm_squared();
-        let mut best = None;
-        for (from, at) in begun {
-            let (found, fitted) = descend(&mut simulator, segment, from, at);
+        let (mut best, mut left) = (None, least);
+        let mut try_from = |from, at, simulator: &mut Simulator<'_>| {
+            let (found, fitted) = descend(simulator, segment, from, at);
             let squares = fitted.residual.norm_squared();
             if squares < 0.999 * least {
                 (least, best) = (squares, Some(found));
             }
+            least
+        };
+        for (from, at) in begun {
+            left = try_from(from, at, &mut simulator);
+        }
+        // The costly beginning is for segments that no other one brings near the rest.
+        if left > BEHIND * usual * segment.times.len() as f64
+            && let Some(from) = lengthened(&mut simulator, segment, &guess)
+            && let Ok(at) = simulator.predict(segment, &from)
+        {
+            try_from(from, at, &mut simulator);
         }
         better.extend(best.map(|start| (index, start)));
     }
@@ -99,6 +110,33 @@ fn arriving(
     // One sampling interval is a small part of a period.
     let state = motion.position.last().zip(motion.velocity.last());
     Ok(state.map(|(position, velocity)| [position + gap * velocity, *velocity]))
+}
+
+/// Shares of a segment that a start state is fitted to, one after the other.
+const SHARES: [f64; 4] = [0.06, 0.14, 0.3, 0.6];
+
+/// Fewest samples that a start state is fitted to.
+const FEWEST: usize = 8;
+
+/// Returns a start state that was fitted to longer and longer beginnings of a segment, from its guess: each one
+/// is nearly in phase with the next, where a fit of the whole from afar may lose count of the swings.
+fn lengthened(simulator: &mut Simulator<'_>, segment: &Segment, guess: &[f64]) -> Option<Vec<f64>> {
+    let mut start = guess.to_vec();
+    for share in SHARES {
+        let count = (share * segment.times.len() as f64) as usize;
+        if count < FEWEST {
+            continue;
+        }
+        let beginning = Segment {
+            times: segment.times.get(..count)?.to_vec(),
+            values: segment.values.get(..count)?.to_vec(),
+            parts: segment.parts.iter().copied().filter(|from| *from < count).collect(),
+            ..segment.clone()
+        };
+        let at = simulator.predict(&beginning, &start).ok()?;
+        (start, _) = descend(simulator, &beginning, start, at);
+    }
+    Some(start)
 }
 
 /// Minimizes the squares of one segment over its start state alone (Levenberg–Marquardt). `at` is the

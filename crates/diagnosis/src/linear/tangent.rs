@@ -98,9 +98,7 @@ impl Path {
                 .iter()
                 .zip(&segment.times)
                 .enumerate()
-                .map(|(index, (x, time))| {
-                    measurement.observe([*x, 0.0], at(rate, index), *time, 0.0).slope
-                })
+                .map(|(index, (x, time))| measurement.observe([*x, 0.0], at(rate, index), *time, 0.0).slope)
                 .collect();
             let mut path = Self {
                 times: segment.times.clone(),

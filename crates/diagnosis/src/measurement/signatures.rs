@@ -91,7 +91,9 @@ fn repeats(stale: &[bool]) -> Option<Finding> {
     if found == 0 {
         return None;
     }
-    let text = format!("{found} of {all} readings repeat the one before while the body moves: they are stale, and left out");
+    let text = format!(
+        "{found} of {all} readings repeat the one before while the body moves: they are stale, and left out"
+    );
     if found as f64 > SLOWER * all as f64 {
         let rows = all as f64 / (all - found) as f64;
         let text = format!("{text}; the sensor has a new reading every {rows:.1} rows");

@@ -100,14 +100,14 @@ mod tests {
         let at = full.observe([x, 1.0], rate, time, 0.0);
         let h = 1e-6;
         let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
-        let by_x =
-            slope(full.observe([x + h, 1.0], rate, time, 0.0).value, full.observe([x - h, 1.0], rate, time, 0.0).value);
+        let by_x = slope(
+            full.observe([x + h, 1.0], rate, time, 0.0).value,
+            full.observe([x - h, 1.0], rate, time, 0.0).value,
+        );
         assert!((by_x - at.slope).abs() < 1e-8);
         assert!((at.by_parameter[Observed::BY_LAG] - at.slope).abs() < 1e-12);
         let phase = |d: f64| {
-            Sensor { nonlinearity: Some((0.02, 0.4 + d)), ..full }
-                .observe([x, 1.0], rate, time, 0.0)
-                .value
+            Sensor { nonlinearity: Some((0.02, 0.4 + d)), ..full }.observe([x, 1.0], rate, time, 0.0).value
         };
         assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
         for side in [-1.0, 1.0] {

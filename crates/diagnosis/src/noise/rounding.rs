@@ -77,7 +77,8 @@ impl Rounded {
 ///
 /// The draws are the nodes of an integral: they are the same in every call.
 pub(crate) fn rounded(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> Option<Rounded> {
-    let lattice = pieces.iter().find_map(|(readings, _)| readings.first().copied()).filter(|_| measured > 0.0)?;
+    let lattice =
+        pieces.iter().find_map(|(readings, _)| readings.first().copied()).filter(|_| measured > 0.0)?;
     let motions: Vec<Vec<f64>> = pieces
         .iter()
         .map(|(readings, errors)| readings.iter().zip(*errors).map(|(y, e)| y - e).collect())

@@ -71,7 +71,10 @@ pub(crate) fn without_rounding(data: &Data, residuals: &[DVector<f64>]) -> Vec<D
     let Some(rounded) = rounded_as(data, residuals, &squares) else { return residuals.to_vec() };
     let of = |(segment, residual): (&Segment, &DVector<f64>)| {
         let pairs = residual.iter().zip(&segment.values);
-        DVector::from_iterator(residual.len(), pairs.map(|(error, value)| error - rounded.bias(value - error)))
+        DVector::from_iterator(
+            residual.len(),
+            pairs.map(|(error, value)| error - rounded.bias(value - error)),
+        )
     };
     data.segments.iter().zip(residuals).map(of).collect()
 }
