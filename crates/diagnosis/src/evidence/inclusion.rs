@@ -14,9 +14,10 @@ use crate::evidence::weighed_sets::{Left, Records, WeighedSets};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
+use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
-use crate::noise::statistics::resampled;
+use crate::noise::statistics::{normal_above, resampled};
 use crate::residual::floor;
 use crate::sets::archive::vanished;
 use crate::sets::proposals::proposal;
@@ -79,7 +80,8 @@ const WHITE: f64 = 1.05;
 const PREDICTED: f64 = 1.2;
 
 /// Ratio of sums of squares below which two errors are the same to three digits, and the largest probability of
-/// a class that changes no error. A class that predicts held-out parts no better is another matter: where the fits of
+/// a class that changes no error or may have no size. Of 16 such classes in four banks (the forty rigs of another
+/// generator, `short`, seeds 92001 to 92003) four were there, of 557 others that were named 455. A class that predicts held-out parts no better is another matter: where the fits of
 /// parts fail, the whole may still be right, and of 20 such classes with evidence 11 were there.
 const UNCHANGED: f64 = 1.001;
 const UNLIKELY: f64 = 0.49;
@@ -139,7 +141,7 @@ impl<'a> Inclusion<'a> {
                     row.either = Some(row.either.map_or(either, |known| known.max(either)));
                 }
             }
-            if self.changes_nothing(*class) {
+            if self.changes_nothing(*class) || self.may_be_zero(*class) {
                 row.probability = row.probability.min(UNLIKELY);
                 row.either = None;
             }
@@ -156,6 +158,28 @@ impl<'a> Inclusion<'a> {
         let others: Vec<Candidate> = with.hypothesis.candidates.iter().filter(is_other).copied().collect();
         let mut without = all().filter(|fit| fit.hypothesis.candidates == others);
         without.any(|without| without.squares < UNCHANGED * with.squares)
+    }
+
+    /// Returns `true` if the best set with a class has no member of it whose size is told from zero. The size of a
+    /// flexible effect is not asked: that of a stiff stop or a small body has no interval that a linearization
+    /// tells.
+    fn may_be_zero(&self, class: EvidenceClass) -> bool {
+        let Some((with, _)) = self.first(&|fit| fit.hypothesis.holds(class)) else { return false };
+        let (fit, facts) = (with.fit, &self.records.data.facts);
+        let variance = fit.variance();
+        let is_told = |place: usize, value: f64| {
+            value.abs() > normal_above(0.025) * (variance * entry(&fit.inverse, place, place)).sqrt()
+        };
+        let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
+        let mut own = parts.into_iter().filter(|(member, _, _)| {
+            fit.hypothesis.candidates.contains(member) && member.evidence_class() == class
+        });
+        own.all(|(member, place, values)| {
+            let Some(first) = place.filter(|_| !member.is_flexible()) else { return false };
+            let parameters = member.parameters(facts);
+            let mut sizes = parameters.iter().zip(values).enumerate().filter(|(_, (own, _))| !own.shape);
+            sizes.all(|(at, (_, value))| !is_told(first + at, *value))
+        })
     }
 
     /// Returns the probability that at least one of two classes acts, if they can replace each other: of the

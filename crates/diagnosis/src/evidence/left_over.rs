@@ -325,7 +325,7 @@ mod tests {
     use dynamics::chain::{Chain, Observed};
     use dynamics::{Active, Nominal, System};
     use rand_distr::{Distribution, StandardNormal};
-    use record::{Clock, ClockChoice};
+    use record::{Clock, ClockChoice, Quantity, Record};
 
     #[test]
     fn equal_variances_say_nothing_and_unequal_ones_much() {
@@ -402,6 +402,26 @@ mod tests {
         let coarse = Active::new("sensor_quantization", &[0.16]).unwrap();
         let chain = Chain::new(Observed::Position, 3e-3, vec![coarse]).unwrap();
         let record = record(&System::new(nominal, Vec::new()).unwrap(), 0.8, 3000, &chain, 3);
+        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        assert_eq!(
+            (answer.verdict.status, answer.verdict.effects),
+            (Status::Effect, vec!["sensor_quantization"])
+        );
+    }
+
+    /// The velocity that a counter of 1024 steps a turn gives by differences: its noise is blue, and an error below
+    /// what its neighbors' differences show is no law's.
+    #[test]
+    fn a_differenced_counter_leaves_nothing_unknown() {
+        let nominal = Nominal::new(1.0, 0.3, 57.0, 0.0).unwrap();
+        let times: Vec<f64> = (0..3000).map(|at| f64::from(at) / 100.0).collect();
+        let position = |time: f64| 0.8 * (-0.15 * time).exp() * ((57.0_f64 - 0.0225).sqrt() * time).cos();
+        let step = std::f64::consts::TAU / 1024.0;
+        let counts: Vec<f64> = times.iter().map(|time| (position(*time) / step).round()).collect();
+        let velocity = counts.windows(2).map(|w| (w[1] - w[0]) * step * 100.0);
+        let times = times.iter().skip(1).copied().collect();
+        let record = Record::new(times, velocity.collect(), None, Quantity::Velocity, "rad/s").unwrap();
         let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
         let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
         assert_eq!(

@@ -13,12 +13,6 @@ use dynamics::{NominalSimulator, Units};
 use nalgebra::DMatrix;
 use record::Quantity;
 
-/// Returns the factor between the inverse of the normal equations and a covariance: the variance of the
-/// residual, times its autocorrelation time.
-pub(crate) fn variance(fit: &Fit) -> f64 {
-    fit.squares / fit.freedom() * fit.autocorrelation_time()
-}
-
 pub(crate) fn around(value: f64, error: f64) -> Interval {
     // A standard error from [`UNBOUNDED`] counts as infinite, whatever the variance that multiplied it.
     let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
@@ -30,7 +24,7 @@ pub(crate) fn around(value: f64, error: f64) -> Interval {
 pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
     // Every global parameter has its place.
     let value = fit.point.globals.get(index).copied().unwrap_or_default();
-    around(value, (variance(fit) * entry(&fit.inverse, index, index)).max(0.0).sqrt())
+    around(value, (fit.variance() * entry(&fit.inverse, index, index)).max(0.0).sqrt())
 }
 
 /// Returns the standard errors of a law's parameters. `fitted` are its fitted parameters, which begin at
@@ -42,7 +36,7 @@ pub(crate) fn spread(fit: &Fit, candidate: Candidate, at: usize, fitted: &[f64])
         set(&mut change, row, column, slope);
     }
     let own = DMatrix::from_fn(count, count, |i, j| entry(&fit.inverse, at + i, at + j));
-    let covariance = &change * own * change.transpose() * variance(fit);
+    let covariance = &change * own * change.transpose() * fit.variance();
     covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
 }
 

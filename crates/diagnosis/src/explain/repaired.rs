@@ -4,7 +4,7 @@ use crate::answer::{Interval, RepairedSimulator, Undetermined};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::evidence::determined::{reach, says_something};
-use crate::explain::coefficients::{around, interval, spread, variance};
+use crate::explain::coefficients::{around, interval, spread};
 use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::significance::{OFF_BY_CHANCE, significant};
@@ -190,7 +190,7 @@ fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
             set(&mut change, place + row, place + column, slope);
         }
     }
-    let covariance = &change * &fit.inverse * change.transpose() * variance(fit);
+    let covariance = &change * &fit.inverse * change.transpose() * fit.variance();
     // Scaled to a unit diagonal before the inversion, because units differ by many orders of magnitude.
     let scale = covariance.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let at = |index: usize| scale.get(index).copied().unwrap_or(1.0);

@@ -64,6 +64,12 @@ impl Fit {
         0.5 * worth * (self.squares.max(f64::MIN_POSITIVE) / squares.max(f64::MIN_POSITIVE)).ln()
     }
 
+    /// Returns the factor between [`Self::inverse`] and a covariance: the variance of the residual, times its
+    /// autocorrelation time.
+    pub(crate) fn variance(&self) -> f64 {
+        self.squares / self.freedom() * self.autocorrelation_time()
+    }
+
     pub(crate) fn autocorrelation_time(&self) -> f64 {
         let pieces: Vec<&[f64]> = self.residuals.iter().map(DVector::as_slice).collect();
         autocorrelation_time(&pieces)

@@ -75,6 +75,10 @@ impl Remaining {
             share = share.max((with_names - noise_square) / excess.max(f64::MIN_POSITIVE));
             evidence = f64::INFINITY;
         }
+        if gap.ratio_to_floor.interval_95[1] < 1.0 {
+            // An error below the noise is the noise's: its spectrum is not white.
+            evidence = 0.0;
+        }
         let left_over = acts(evidence);
         let nameless = unknown(left_over, share.min(1.0));
         Ok(Self { unnamed, noise: noise.value, paths, gap, excess, nameless, left_over })
