@@ -9,7 +9,7 @@ use crate::error::Fault;
 use crate::line::Line;
 use crate::lost::Numbers;
 use crate::record::{InputRow, Record, beside};
-use crate::stamps::{StampStatistics, stamp_rounding, statistics, without_ties};
+use crate::stamps::{SIGNIFICANT, StampStatistics, stamp_rounding, statistics, without_ties};
 use crate::words::{counted, two_digits};
 use serde::{Deserialize, Serialize};
 
@@ -110,7 +110,7 @@ impl Clock {
         if ends.len() < 2 {
             return Err(Fault::NoTimePasses { stamp: first });
         }
-        // Stamps that lie on no lattice are not rounded.
+        // Stamps that lie on no lattice are not rounded: their step is zero.
         let numbers = Numbers::with_lost(&ends, &rows, record.values(), rounding.unwrap_or(0.0))
             .unwrap_or_else(|| Numbers::plain(&ends, &rows));
         let line = Line::through(&numbers.ends);
@@ -257,9 +257,6 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
 /// Largest distance from an even clock, in sampling intervals, at which stamps count as even, whatever the
 /// values show.
 const EVEN: f64 = 1e-6;
-
-/// Number of standard errors that a preference must exceed: 1 % by chance, one-sided.
-pub(crate) const SIGNIFICANT: f64 = 2.33;
 
 /// Returns the row number and the stamp of the last sample of each group of equal stamps. The record's last
 /// group may be cut off, so that its last sample need not be the least late; with many groups this does not

@@ -1,6 +1,5 @@
 //! Statistics of a record's stamps.
 
-use crate::clock::SIGNIFICANT;
 use crate::line::{Bend, Line};
 use crate::lost::Numbers;
 use crate::roughness::preference_for_even;
@@ -63,6 +62,9 @@ pub(crate) fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
         })
         .map(|scale| 1.0 / scale)
 }
+
+/// Number of standard errors that a preference must exceed: 1 % by chance, one-sided.
+pub(crate) const SIGNIFICANT: f64 = 2.33;
 
 /// Share of long steps beyond which scatter of the stamps makes them, if the values agree and no loss is found:
 /// stamps that scatter by an interval and are sorted have long steps everywhere.

@@ -404,7 +404,7 @@ fn wave(points: &[(f64, f64)], omega: Option<f64>) -> ([f64; 3], f64) {
         None => [1.0, time, time * time],
     };
     let design = nalgebra::DMatrix::from_fn(points.len(), 3, |row, column| {
-        // Rows and columns are those of the points.
+        // Rows and columns are those of the points; none is missing.
         points.get(row).and_then(|(time, _)| columns(*time).get(column).copied()).unwrap_or(0.0)
     });
     let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));

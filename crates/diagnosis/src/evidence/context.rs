@@ -156,6 +156,7 @@ impl<'a> Context<'a> {
             return false;
         };
         let variance = repaired.squares / repaired.freedom() * self.time * entry(&repaired.inverse, at, at);
+        // Every calibrated coefficient is among the globals.
         let moved = repaired.point.globals.get(at).map_or(0.0, |angle| angle - own.nominal.rest_angle());
         moved.abs() > normal_above(0.5 * SHIFTED_BY_CHANCE) * variance.sqrt()
     }

@@ -91,7 +91,7 @@ fn unlike(values: &[f64]) -> f64 {
     quantile(if are_unlike { &gaps } else { &changes }, SMALLEST)
 }
 
-/// Returns whether each sample with odds repeats the one before.
+/// Returns, for each sample with odds, `true` if it repeats the one before.
 fn repeats_of(odds: &[Option<(f64, f64)>], repeats: &[bool]) -> impl Iterator<Item = bool> {
     odds.iter().zip(repeats).filter(|(odds, _)| odds.is_some()).map(|(_, repeats)| *repeats)
 }
@@ -105,6 +105,7 @@ fn noise(observations: &Observations, repeats: &[bool]) -> f64 {
 /// Returns E[(1 − |d|/q)₊] for a change of mean `speed`.
 fn agree(change: &Normal, speed: f64, step: f64) -> f64 {
     // The integral of the normal distribution's probability.
+    // A normal distribution has a deviation.
     let variance = change.std_dev().map_or(0.0, |deviation| deviation * deviation);
     let ramp = |x: f64| x * change.cdf(x) + variance * change.pdf(x);
     ((ramp(speed + step) + ramp(speed - step) - 2.0 * ramp(speed)) / step).clamp(0.0, 1.0)

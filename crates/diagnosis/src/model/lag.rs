@@ -36,6 +36,7 @@ impl Lag {
     /// Prepares the filter of a time constant for the times of a segment. `frequency` is the swing's angular
     /// frequency.
     pub(crate) fn new(constant: f64, times: &[f64], frequency: f64) -> Self {
+        // Without samples the span is zero.
         let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
         let interval = span / times.len().max(2) as f64;
         let constant = constant.max(SHORTEST * interval).max(f64::MIN_POSITIVE);

@@ -7,5 +7,6 @@ pub(crate) mod encoder_hysteresis;
 pub(crate) mod hypothesis;
 pub(crate) mod lag;
 pub(crate) mod predictor;
+pub(crate) mod seen;
 pub(crate) mod sensor;
 pub(crate) mod vocabulary;

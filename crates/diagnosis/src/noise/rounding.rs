@@ -35,7 +35,7 @@ impl Mean {
     }
 }
 
-/// What is known of readings that are rounded to whole steps.
+/// Readings that are rounded to whole steps, and the noise beneath the steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rounded {
     /// One of the values that a reading can have, and the distance to the next.

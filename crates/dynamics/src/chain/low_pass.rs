@@ -98,7 +98,7 @@ pub struct LowPass<S> {
     steps: Vec<Interval<S>>,
 }
 
-/// What the filter does over an interval: its own decay, and the weights of value and rate at the beginning, and
+/// Effect of the filter over an interval: its own decay, and the weights of value and rate at the beginning, and
 /// of value and rate at the end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Interval<S> {
