@@ -1,22 +1,16 @@
 //! Detection of isolated wrong samples by comparison with the samples around them.
 
 use crate::data::observations::Observations;
+use crate::measurement::neighbors::{Distance, OF_MEDIAN, distances, interval, points};
 use crate::measurement::stale::stale;
 use crate::noise::statistics::{median, normal_above};
 
 /// Probability that Gaussian noise alone produces an outlier in a record.
 const FALSE_ALARM: f64 = 1e-3;
 
-/// Ratio of a Gaussian's standard deviation to the median of its absolute value.
-const OF_MEDIAN: f64 = 1.4826;
-
 /// Number of samples that share a noise scale with their neighbors: noise may grow with speed, and a fast
 /// mode may ring down.
 const BLOCK: usize = 64;
-
-/// Largest spacing of a neighborhood, as the product of its distances over that of an even one. One sample
-/// lost in the middle makes it 3; the cubic's own error grows in proportion.
-const WIDE: f64 = 4.0;
 
 /// Largest ratio of the distance at double spacing to that at single spacing. For a wrong sample both are
 /// equal (1); for a bend of the motion the ratio is 2, for a curve more.
@@ -72,84 +66,6 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     if dropped > most + BY_CHANCE * most.sqrt() { everything } else { kept }
 }
 
-/// Returns the standard deviation of the white noise of samples, from their distances to their neighbors. It
-/// includes rounding, even if the steps are so coarse that most neighbors agree.
-pub(crate) fn white_noise(observations: &Observations, kept: &[bool]) -> f64 {
-    let points = points(observations, kept);
-    let sizes: Vec<f64> =
-        distances(&points, 1, interval(observations)).iter().flatten().map(Distance::in_noise).collect();
-    // Readings without a stated resolution count as not rounded.
-    let rounding = observations.resolution.map_or(0.0, |step| step / 12.0_f64.sqrt());
-    (OF_MEDIAN * median(&sizes)).max(rounding)
-}
-
-/// Index, time and value of a sample.
-type Point = (usize, f64, f64);
-
-fn points(observations: &Observations, kept: &[bool]) -> Vec<Point> {
-    let samples = observations.times_s.iter().zip(&observations.values).enumerate();
-    let samples = samples.zip(kept).filter(|(_, kept)| **kept);
-    samples.map(|((index, (&time, &value)), _)| (index, time, value)).collect()
-}
-
-fn interval(observations: &Observations) -> f64 {
-    let times = &observations.times_s;
-    let steps: Vec<f64> = times.iter().zip(times.iter().skip(1)).map(|(one, next)| next - one).collect();
-    median(&steps)
-}
-
-/// Distance of a sample from the cubic through its neighbors.
-#[derive(Debug, Clone, Copy)]
-struct Distance {
-    value: f64,
-    /// Standard deviation of the distance for white noise of 1.
-    spread: f64,
-    /// Largest distance that rounding by half a step can cause, for a step of 1.
-    rounding: f64,
-}
-
-impl Distance {
-    fn in_noise(&self) -> f64 {
-        self.value.abs() / self.spread
-    }
-}
-
-/// Returns the distances of all samples from cubics through the four neighbors once and twice `spacing` away;
-/// `None` near the ends and where samples in between are missing.
-fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Distance>> {
-    let even = 4.0 * (spacing as f64 * interval).powi(4);
-    let at = |index: Option<usize>| index.and_then(|index| points.get(index)).copied();
-    (0..points.len())
-        .map(|index| {
-            let nodes = [
-                at(index.checked_sub(2 * spacing))?,
-                at(index.checked_sub(spacing))?,
-                at(Some(index + spacing))?,
-                at(Some(index + 2 * spacing))?,
-            ];
-            let (_, time, value) = at(Some(index))?;
-            let product: f64 = nodes.iter().map(|node| (time - node.1).abs()).product();
-            if product.is_nan() || product > WIDE * even {
-                return None;
-            }
-            let (mut sum, mut squares, mut sizes) = (0.0, 1.0, 1.0);
-            for (own, node) in nodes.iter().enumerate() {
-                let others = nodes.iter().enumerate().filter(|(other, _)| *other != own);
-                let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
-                // With differences of values, samples at rest lie on the cubic exactly.
-                sum += weight * (node.2 - value);
-                squares += weight * weight;
-                sizes += weight.abs();
-            }
-            squares.is_finite().then(|| Distance {
-                value: -sum,
-                spread: squares.sqrt(),
-                rounding: 0.5 * sizes,
-            })
-        })
-        .collect()
-}
-
 /// Returns the indices of further wrong samples, given the samples that are still kept.
 fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
     let points = points(observations, kept);
@@ -191,8 +107,9 @@ fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{kept, white_noise};
+    use super::kept;
     use crate::Observations;
+    use crate::measurement::neighbors::white_noise;
     use dynamics::reference::{Tolerance, simulate};
     use dynamics::{Active, Nominal, Start, System};
     use rand::RngExt;

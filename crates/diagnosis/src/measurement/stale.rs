@@ -1,7 +1,7 @@
 //! Detection of stale readings: rows that repeat the reading before because no new one had arrived.
 
 use crate::data::observations::Observations;
-use crate::measurement::outliers::white_noise;
+use crate::measurement::neighbors::white_noise;
 use crate::noise::statistics::quantile;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 use statrs::statistics::Distribution;

@@ -12,7 +12,7 @@ const LONGEST: f64 = 1.2;
 
 /// Low-pass filter of a sensor over a segment, T·ẏ + y = x.
 ///
-/// What came before a segment, or in the place of missing samples, is not known. The first reading is that of a
+/// The motion before a segment, or in the place of missing samples, is not known. The first reading is that of a
 /// steady swing of angular frequency ω about any center: y = x − (T·ẋ − T²·ẍ)/(1 + (ωT)²), which the filter
 /// forgets within T.
 pub(crate) struct Lag {
