@@ -442,10 +442,10 @@ fn guess(
         .map(|(_, point)| point)
         .collect();
     // A law far from a spring's has other frequencies at other amplitudes.
-    let tried = LOCAL.map(|factor| (factor * omega, wave(&points, period_s.map(|_| factor * omega))));
+    let others: &[f64] = if period_s.is_some() { &LOCAL } else { &[] };
+    let tried = others.iter().map(|factor| (factor * omega, wave(&points, Some(factor * omega))));
     let own = wave(&points, period_s.map(|_| omega));
     let (omega, (coefficients, _)) = tried
-        .into_iter()
         .filter(|(_, (_, squares))| *squares < CLOSER * own.1)
         .min_by(|a, b| a.1.1.total_cmp(&b.1.1))
         .unwrap_or((omega, own));

@@ -62,11 +62,14 @@ pub(crate) fn stale(observations: &Observations) -> Vec<bool> {
         })
         .collect();
     let (mut moving, mut found, mut expected) = (0.0, 0.0, 0.0);
-    for ((speed, chance), repeats) in odds.iter().flatten().zip(repeats_of(&odds, &repeats)) {
-        if *speed > step && *chance < SELDOM {
+    for (odds, repeats) in odds.iter().zip(&repeats) {
+        if let Some((speed, chance)) = odds
+            && *speed > step
+            && *chance < SELDOM
+        {
             moving += 1.0;
             expected += chance;
-            found += f64::from(u8::from(repeats));
+            found += f64::from(u8::from(*repeats));
         }
     }
     if found <= expected + BY_CHANCE * (expected.sqrt() + 1.0) {
@@ -89,11 +92,6 @@ fn unlike(values: &[f64]) -> f64 {
     let gaps = distances(&sorted);
     let are_unlike = gaps.len() as f64 > UNLIKE * changes.len() as f64;
     quantile(if are_unlike { &gaps } else { &changes }, SMALLEST)
-}
-
-/// Returns, for each sample with odds, `true` if it repeats the one before.
-fn repeats_of(odds: &[Option<(f64, f64)>], repeats: &[bool]) -> impl Iterator<Item = bool> {
-    odds.iter().zip(repeats).filter(|(odds, _)| odds.is_some()).map(|(_, repeats)| *repeats)
 }
 
 /// Returns the noise of the samples that no repeat is near.

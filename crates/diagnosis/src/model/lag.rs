@@ -15,27 +15,26 @@ const LONGEST: f64 = 1.2;
 /// The motion before a segment, or in the place of missing samples, is not known. The first reading is that of a
 /// steady swing of angular frequency ω about any center: y = x − (T·ẋ − T²·ẍ)/(1 + (ωT)²), which the filter
 /// forgets within T.
-pub(crate) struct Lag {
-    runs: Vec<Run>,
+pub(crate) struct Lag<'t> {
+    runs: Vec<Run<'t>>,
     constant: f64,
     frequency: f64,
 }
 
-/// Filter over samples of which none is missing: the index of the first, and the filter with its derivative by
-/// the time constant.
-struct Run {
+/// Filter over samples of which none is missing: the index of the first, the times, and the filter.
+struct Run<'t> {
     from: usize,
+    times: &'t [f64],
     filter: LowPass<f64>,
-    by_constant: LowPass<Dual<1>>,
 }
 
 /// Value, rate and curvature of a series at an index.
 type Series<'a> = &'a dyn Fn(usize) -> Option<[f64; 3]>;
 
-impl Lag {
+impl<'t> Lag<'t> {
     /// Prepares the filter of a time constant for the times of a segment. `frequency` is the swing's angular
     /// frequency.
-    pub(crate) fn new(constant: f64, times: &[f64], frequency: f64) -> Self {
+    pub(crate) fn new(constant: f64, times: &'t [f64], frequency: f64) -> Self {
         // Without samples the span is zero.
         let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
         let interval = span / times.len().max(2) as f64;
@@ -43,8 +42,7 @@ impl Lag {
         let is_near = |from: &f64, to: &f64| (to - from) * frequency < LONGEST;
         let mut from = 0;
         let runs = times.chunk_by(is_near).map(|times| {
-            let by_constant = LowPass::new(Dual::variable(constant, 0), times);
-            let run = Run { from, filter: LowPass::new(constant, times), by_constant };
+            let run = Run { from, times, filter: LowPass::new(constant, times) };
             from += times.len();
             run
         });
@@ -62,7 +60,7 @@ impl Lag {
 
     /// Returns the readings of a series, or a derivative of the readings from that of the series.
     pub(crate) fn of(&self, series: Series<'_>) -> Vec<f64> {
-        let over = |run: &Run| {
+        let over = |run: &Run<'_>| {
             let [first, _] = self.first(series(run.from)?);
             let at = |index| series(run.from + index).map(|[value, rate, _]| [value, rate]);
             Some(run.filter.of(at, first))
@@ -72,11 +70,12 @@ impl Lag {
 
     /// Returns the derivatives of the readings by the time constant.
     pub(crate) fn by_constant(&self, series: Series<'_>) -> Vec<f64> {
-        let over = |run: &Run| {
+        let over = |run: &Run<'_>| {
             let [value, by_constant] = self.first(series(run.from)?);
             let first = Dual { value, partials: [by_constant] };
             let dual = |[value, rate, _]: [f64; 3]| [Dual::from(value), Dual::from(rate)];
-            Some(run.by_constant.of(|index| series(run.from + index).map(dual), first))
+            let filter = LowPass::new(Dual::variable(self.constant, 0), run.times);
+            Some(filter.of(|index| series(run.from + index).map(dual), first))
         };
         let runs = self.runs.iter().filter_map(over).flatten();
         runs.map(|own| own.partials.into_iter().sum()).collect()

@@ -267,7 +267,8 @@ impl<'a> Simulator<'a> {
         let mut jacobian = DMatrix::zeros(count, width);
         let mut seen = Seen::new(&self.response, self.data.quantity);
         if let Some(constant) = self.measurement.lag {
-            seen = seen.through(&Lag::new(constant, &self.times, self.facts().frequency));
+            let lag = Lag::new(constant, &self.times, self.facts().frequency);
+            seen = seen.through(&lag, self.derivatives == Derivatives::All);
         }
         let bends_by = self.bends_by(segment, start);
         // A segment has samples; without any no row is read.

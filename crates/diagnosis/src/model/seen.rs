@@ -41,7 +41,8 @@ impl<'r> Seen<'r> {
     }
 
     /// Returns the same as a sensor with a lag sees it.
-    pub(crate) fn through(self, lag: &Lag) -> Self {
+    /// `differentiated` asks for the derivatives by the time constant, which count as zero otherwise.
+    pub(crate) fn through(self, lag: &Lag<'_>, differentiated: bool) -> Self {
         // A response has an entry for every row; derivatives that it lacks count as zero.
         let of = |lists: [&'r [f64]; 3], index: usize| {
             let [value, others @ ..] = lists;
@@ -53,7 +54,7 @@ impl<'r> Seen<'r> {
         let column = |own: usize| lag.of(&|row| of(self.by_free, row * self.columns + own));
         let lagged = Lagged {
             values: lag.of(&motion),
-            by_constant: lag.by_constant(&motion),
+            by_constant: if differentiated { lag.by_constant(&motion) } else { Vec::new() },
             by_free: (0..self.columns).map(column).collect(),
         };
         Self { lagged: Some(lagged), ..self }
