@@ -102,6 +102,10 @@ pub struct DataSettings {
     unit: Option<Unit>,
     input_unit: Option<Unit>,
     time_unit: Option<TimeUnit>,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+    run: Option<usize>,
+    counts_per_turn: Option<f64>,
     #[serde(rename = "where")]
     filter: Option<Filter>,
     missing: Missing,
@@ -125,10 +129,14 @@ impl DataSettings {
                 input_unit: self.input_unit,
                 time_unit: self.time_unit,
                 sample_rate_hz: self.sample_rate_hz,
+                run: self.run,
+                counts_per_turn: self.counts_per_turn,
                 filter: self.filter.clone(),
                 missing: self.missing,
             },
             quantity: self.quantity,
+            from_s: self.from_s,
+            to_s: self.to_s,
             ..ReadOptions::default()
         }
     }

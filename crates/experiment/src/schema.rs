@@ -149,6 +149,32 @@ pub(crate) const DATA: &[Field] = &[
         ..PLAIN
     },
     Field {
+        key: "from_s",
+        kind: Kind::Float { min: -1e12, max: 1e12 },
+        unit: "s",
+        meaning: "Start of the part of the time to read; left open, that in which the system swings freely.",
+        ..PLAIN
+    },
+    Field {
+        key: "to_s",
+        kind: Kind::Float { min: -1e12, max: 1e12 },
+        unit: "s",
+        meaning: "End of that part.",
+        ..PLAIN
+    },
+    Field {
+        key: "run",
+        kind: Kind::Integer { min: 1, max: 65535 },
+        meaning: "csv: the run to read, where a file holds several, each with its own time; left open, the first.",
+        ..PLAIN
+    },
+    Field {
+        key: "counts_per_turn",
+        kind: Kind::Float { min: 1e-9, max: 1e12 },
+        meaning: "csv: counts of the encoder that make a turn, where the observed column holds counts.",
+        ..PLAIN
+    },
+    Field {
         key: "where",
         meaning: "csv: the lines to read, as COLUMN=VALUE, where a file holds several series; left open, all.",
         ..PLAIN

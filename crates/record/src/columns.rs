@@ -23,6 +23,12 @@ pub struct CsvColumns {
     /// Sampling rate in hertz. It places the samples of a file without a time column; in a file with one it
     /// is a statement to be checked.
     pub sample_rate_hz: Option<f64>,
+    /// Number, from 1, of the run to read, if the file holds several, each with its own time; by default the
+    /// first.
+    pub run: Option<usize>,
+    /// Number of counts of an encoder that make one turn: the values are counts. A stated unit is used
+    /// instead, if there is one in the options.
+    pub counts_per_turn: Option<f64>,
     /// Filter on the lines to read; by default all lines are read.
     pub filter: Option<Filter>,
     /// Treatment of cells without a number.

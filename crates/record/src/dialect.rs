@@ -2,6 +2,7 @@
 
 use crate::error::Fault;
 use crate::heading::measure_of;
+use std::borrow::Cow;
 
 /// Dialect of a file of columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,10 +17,10 @@ pub(crate) struct Dialect {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout<'a> {
     pub(crate) dialect: Dialect,
-    /// Line number of the header, from 1.
+    /// Line number of the header, from 1; 0 if there is none.
     pub(crate) line: u64,
-    /// Titles of the columns.
-    pub(crate) titles: Vec<&'a str>,
+    /// Titles of the columns; made up if there is no header.
+    pub(crate) titles: Vec<Cow<'a, str>>,
     /// Cells of the line of units, if there is one.
     pub(crate) units: Option<Vec<&'a str>>,
     /// Number of lines above the header that are neither empty nor comments.
@@ -44,9 +45,6 @@ const TRIED: [(char, bool); 10] = [
 
 /// Number of lines, at the end of the file, from which the dialect is determined.
 const TOLD_FROM: usize = 60;
-
-/// Number of characters of a line shown in a message.
-const SHOWN: usize = 60;
 
 impl Dialect {
     /// Returns the cells of a line, trimmed and without quotes.
@@ -107,7 +105,9 @@ fn blanks(line: &str) -> Vec<&str> {
         if sign.is_whitespace() && depth <= 0 {
             // At the end of the line nothing follows.
             let rest = line.get(at..).unwrap_or_default().trim_start();
-            if let Some(from) = start.filter(|_| !rest.starts_with(['[', '('])) {
+            // In a line of units each bracket is a cell of its own.
+            let bracket = |from: usize| line.get(from..).is_some_and(|own| own.starts_with(['[', '(']));
+            if let Some(from) = start.filter(|from| !rest.starts_with(['[', '(']) || bracket(*from)) {
                 cells.push(cell(line.get(from..end)));
                 start = None;
             }
@@ -152,7 +152,7 @@ pub(crate) fn statements(text: &str) -> impl Iterator<Item = &str> {
 /// Determines the dialect and the layout of a text.
 ///
 /// # Errors
-/// [`Fault::Empty`] and [`Fault::NoHeader`].
+/// [`Fault::Empty`].
 pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     let all = || text.lines().zip(1_u64..).map(|(line, number)| (number, line));
     let lines: Vec<(u64, &str)> =
@@ -197,7 +197,8 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
         [(_, line), below @ ..] if is_rule(line) => below,
         rows => rows,
     };
-    Ok(Layout { dialect, line, titles: dialect.split(header), units, preamble: at, rows: rows.to_vec() })
+    let titles = dialect.split(header).into_iter().map(Cow::Borrowed).collect();
+    Ok(Layout { dialect, line, titles, units, preamble: at, rows: rows.to_vec() })
 }
 
 fn is_unit(cell: &str) -> bool {
@@ -211,15 +212,15 @@ fn filled(cells: &[&str]) -> usize {
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// Returns the layout of a text whose header is in the last comment above the samples: `# time angle`, or
-/// `%time,field.data` as ROS writes it.
+/// Returns the layout of a text whose header is in the last comment above the samples, as in `# time angle`
+/// or in `%time,field.data` as ROS writes it, or of a text that has no header.
 fn in_comment<'a>(
     text: &'a str,
     dialect: Dialect,
     lines: &[(u64, &'a str)],
     width: usize,
 ) -> Result<Layout<'a>, Fault> {
-    let Some(&(first, written)) = lines.first() else {
+    let Some(&(first, _)) = lines.first() else {
         return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
     };
     let before = text.lines().zip(1_u64..).take_while(|(_, line)| *line < first);
@@ -229,11 +230,29 @@ fn in_comment<'a>(
         cells.len() == width
             && cells.iter().all(|cell| cell.contains(char::is_alphabetic) && !cell.contains(": "))
     };
-    let Some((titles, line)) = found.map(titles).filter(is_header).last() else {
-        let found = written.trim().chars().take(SHOWN).collect();
-        return Err(Fault::NoHeader { line: first, found, separator: dialect.separator });
+    let (titles, line) = match found.map(titles).filter(is_header).last() {
+        Some((titles, line)) => (titles.into_iter().map(Cow::Borrowed).collect(), line),
+        None => (made_up(dialect, lines, width), 0),
     };
     Ok(Layout { dialect, line, titles, units: None, preamble: 0, rows: lines.to_vec() })
+}
+
+/// Returns titles for the columns of a text without a header: `time` for a first column that increases from
+/// line to line, `value` for the only other one, else `column_1` and so on.
+fn made_up<'a>(dialect: Dialect, lines: &[(u64, &str)], width: usize) -> Vec<Cow<'a, str>> {
+    let first = |line: &str| dialect.split(line).first().and_then(|cell| dialect.number(cell));
+    let stamps: Vec<f64> = lines.iter().filter_map(|(_, line)| first(line)).collect();
+    let rises = stamps.windows(2).filter(|pair| pair.first() < pair.last()).count();
+    let falls = stamps.windows(2).any(|pair| pair.first() > pair.last());
+    let dates = lines.iter().all(|(_, line)| dialect.split(line).first().is_some_and(|cell| is_date(cell)));
+    let timed = width > 1 && (dates || !falls && 2 * rises > stamps.len());
+    let others = width - usize::from(timed);
+    let title = |at: usize| match at {
+        0 if timed => Cow::Borrowed("time"),
+        _ if others == 1 => Cow::Borrowed("value"),
+        _ => Cow::Owned(format!("column_{}", at + 1)),
+    };
+    (0..width).map(title).collect()
 }
 
 /// Returns the dialect in which the largest share of cells are numbers, with lines of equal width.

@@ -55,18 +55,32 @@ pub enum Fault {
         /// Header that the format requires.
         expected: String,
     },
-    /// There are numbers in place of the column names.
+    /// The file has fewer runs than the number asked for.
+    #[error("there is no run {asked}: the file holds {count}; set `data.run` to a number from 1 to {count}")]
+    NoSuchRun {
+        /// Number asked for, from 1.
+        asked: usize,
+        /// Number of runs in the file.
+        count: usize,
+    },
+    /// The part of the time that is asked for holds too few samples.
     #[error(
-        "the first line holds numbers, `{found}`; expected a header with the columns' names above them: put a line \
-         such as time_s{separator}angle_rad in front"
+        "between {from_s} s and {to_s} s lie {found} samples; a record needs at least {needed}. The file goes from \
+         {first_s} s to {last_s} s: set `data.from_s` and `data.to_s` to times between them"
     )]
-    NoHeader {
-        /// Number of the first line, from 1.
-        line: u64,
-        /// Beginning of the line as written.
-        found: String,
-        /// Separator of its cells.
-        separator: char,
+    EmptyPart {
+        /// Start of the part, in seconds.
+        from_s: f64,
+        /// End of the part, in seconds.
+        to_s: f64,
+        /// Number of samples in it.
+        found: usize,
+        /// Smallest number of samples of a record.
+        needed: usize,
+        /// First stamp of the file, in seconds.
+        first_s: f64,
+        /// Last stamp of the file, in seconds.
+        last_s: f64,
     },
     /// A column is missing.
     #[error("there is no column `{wanted}`; the header has {found}. Set `{key}` to the column's name")]
@@ -236,11 +250,10 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Returns `:LINE` if the fault has a line, otherwise an empty text.
+    /// Returns `:LINE` if the fault has a line, otherwise an empty text, as for a file without a header.
     fn place(&self) -> String {
         match self {
             Self::BadHeader { line, .. }
-            | Self::NoHeader { line, .. }
             | Self::NoTime { line, .. }
             | Self::InputIsTaken { line, .. }
             | Self::Ambiguous { line, .. }
@@ -251,7 +264,11 @@ impl Fault {
             | Self::ExtraFields { line, .. }
             | Self::NotANumber { line, .. }
             | Self::NotFinite { line, .. }
-            | Self::TimeDecreases { line, .. } => format!(":{line}"),
+            | Self::TimeDecreases { line, .. }
+                if *line > 0 =>
+            {
+                format!(":{line}")
+            }
             _ => String::new(),
         }
     }

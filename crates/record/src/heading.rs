@@ -62,6 +62,11 @@ impl Heading {
         }
     }
 
+    /// Returns the title without a unit in brackets: `q1` for `q1 [rad]`.
+    pub(crate) fn without_unit(&self) -> &str {
+        in_brackets(&self.title).map_or(self.title.as_str(), |(name, _)| name).trim()
+    }
+
     pub(crate) fn has(&self, word: &str) -> bool {
         self.words.iter().any(|own| own == word)
     }

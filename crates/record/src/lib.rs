@@ -8,10 +8,12 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod clock;
+mod coding;
 mod columns;
 mod copies;
 mod csv_file;
 mod dialect;
+mod doubts;
 mod error;
 mod file;
 mod heading;
@@ -26,8 +28,11 @@ mod reading;
 mod record;
 mod roles;
 mod roughness;
+mod runs;
 mod stamps;
 mod statement;
+mod swing;
+mod table;
 #[cfg(test)]
 mod tests;
 mod times;

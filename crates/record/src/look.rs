@@ -1,12 +1,12 @@
 //! First look at a log: everything that a reader finds out without options.
 
 use crate::clock::{Clock, ClockChoice};
-use crate::csv_file::Table;
 use crate::error::RecordError;
 use crate::file::{Source, bytes_of, read_text, text_of};
 use crate::options::ReadOptions;
 use crate::record::Record;
 use crate::roles::Kind;
+use crate::table::Table;
 use std::path::Path;
 
 /// Findings about a file.

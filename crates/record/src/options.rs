@@ -37,6 +37,11 @@ pub struct ReadOptions {
     /// Coordinate of the motion, if it is known: columns of its dimension are preferred, and values without a
     /// stated unit are in its SI unit.
     pub coordinate: Option<Coordinate>,
+    /// Start of the part of the time to read, in seconds as the stamps are read; by default the whole record,
+    /// or the part of it in which the system swings freely.
+    pub from_s: Option<f64>,
+    /// End of that part, in seconds.
+    pub to_s: Option<f64>,
     /// `true` if an input is known to drive the system: a command or a voltage is then accepted as the input
     /// too.
     pub driven: bool,

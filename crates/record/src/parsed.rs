@@ -73,7 +73,8 @@ impl Parsed {
             Dimension::Angle => Coordinate::Angle,
             _ => Coordinate::Displacement,
         };
-        let reading = Reading { quantity, coordinate, ..self.reading }.worded(rate_hz);
+        let (record, part_s) = record.between(options.from_s, options.to_s)?;
+        let reading = Reading { quantity, coordinate, part_s, ..self.reading }.worded(rate_hz);
         Ok((record, self.statements, self.findings, reading))
     }
 }

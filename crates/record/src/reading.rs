@@ -42,12 +42,18 @@ pub struct Reading {
     pub decimal: String,
     /// Line number of the header, from 1.
     pub header_line: u64,
+    /// Number of the run, from 1, if the file holds several.
+    pub run: Option<usize>,
     /// Time column; `None` if the samples are placed at a given rate.
     pub time: Option<ColumnReading>,
     /// That rate, in hertz.
     pub sample_rate_hz: Option<f64>,
     /// Observed column.
     pub value: ColumnReading,
+    /// Number of counts that make a turn, if the observed numbers are counts.
+    pub counts_per_turn: Option<f64>,
+    /// Part of the time that was read, in seconds, if it is not the whole record.
+    pub part_s: Option<[f64; 2]>,
     /// Column of the input.
     pub input: Option<ColumnReading>,
     /// Filter on the lines: `COLUMN=VALUE`.
@@ -82,11 +88,15 @@ impl Reading {
             column(Some(&self.value), ["value", "unit"]);
             column(self.input.as_ref(), ["input", "input_unit"]);
             options.extend(self.sample_rate_hz.map(|rate| ("sample_rate_hz", rate.to_string())));
+            options.extend(self.counts_per_turn.map(|counts| ("counts_per_turn", counts.to_string())));
+            options.extend(self.run.map(|run| ("run", run.to_string())));
             options.extend(self.filter.clone().map(|filter| ("where", filter)));
             if self.missing_cells > 0 {
                 options.push(("missing", self.missing.name().to_owned()));
             }
         }
+        let part = self.part_s.map(|[from, to]| [("from_s", from.to_string()), ("to_s", to.to_string())]);
+        options.extend(part.into_iter().flatten());
         options.push(("quantity", self.quantity.name().to_owned()));
         options
     }
@@ -101,6 +111,7 @@ impl Reading {
                 format!("{role} = \"{}\" in {unit} (assumed)", read.column)
             }
             Some(unit) => format!("{role} = \"{}\" in {unit}", read.column),
+            None if read.because.contains("; counts, ") => format!("{role} = \"{}\" in counts", read.column),
             None => format!("{role} = \"{}\" as it is", read.column),
         };
         let mut first = match self.format.as_str() {
@@ -111,6 +122,7 @@ impl Reading {
             first.push_str(", decimal comma");
         }
         let mut parts = vec![first];
+        parts.extend(self.run.map(|run| format!("run {run}")));
         parts.extend(self.filter.as_ref().map(|filter| format!("lines with {filter}")));
         parts.push(match (&self.time, self.sample_rate_hz) {
             (Some(time), _) => column("time", time),
@@ -121,6 +133,7 @@ impl Reading {
         parts.push(self.input.as_ref().map_or_else(|| "no input".to_owned(), |input| column("input", input)));
         parts.extend(self.missing_in_words());
         parts.push(format!("rate {rate_hz:.1} Hz"));
+        parts.extend(self.part_s.map(|[from, to]| format!("from {from} s to {to} s")));
         Self { sentence: format!("read as: {}", parts.join("; ")), ..self }
     }
 

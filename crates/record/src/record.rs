@@ -171,6 +171,36 @@ impl Record {
         Ok(Self { rows: self.rows.clone(), input_rows: input_rows.collect(), ..mapped })
     }
 
+    /// Returns the part of the record between two stamps, in seconds, both included, with its ends; the whole
+    /// record and `None` without either.
+    ///
+    /// # Errors
+    /// [`Fault::EmptyPart`] if fewer than [`FEWEST_SAMPLES`] samples lie between them.
+    pub fn between(self, from_s: Option<f64>, to_s: Option<f64>) -> Result<(Self, Option<[f64; 2]>), Fault> {
+        let ends = self.stamps_s.first().copied().zip(self.stamps_s.last().copied());
+        let Some((first_s, last_s)) = ends.filter(|_| from_s.or(to_s).is_some()) else {
+            return Ok((self, None));
+        };
+        let (from_s, to_s) = (from_s.unwrap_or(first_s), to_s.unwrap_or(last_s));
+        let from = self.stamps_s.partition_point(|stamp| *stamp < from_s);
+        let to = self.stamps_s.partition_point(|stamp| *stamp <= to_s).max(from);
+        if to - from < FEWEST_SAMPLES {
+            let found = to - from;
+            return Err(Fault::EmptyPart { from_s, to_s, found, needed: FEWEST_SAMPLES, first_s, last_s });
+        }
+        let cut = |column: &[f64]| column.get(from..to).unwrap_or_default().to_vec();
+        let rows = self.rows.as_deref().and_then(|rows| rows.get(from..to)).map(<[usize]>::to_vec);
+        let part = Self {
+            stamps_s: cut(&self.stamps_s),
+            values: cut(&self.values),
+            input: self.input.as_deref().map(cut),
+            rows,
+            input_rows: Vec::new(),
+            ..self
+        };
+        Ok((part.with_input_rows(self.input_rows), Some([from_s, to_s])))
+    }
+
     /// Returns the number of each sample among the rows of its file, or `None` if every row holds a sample.
     #[must_use]
     pub fn rows(&self) -> Option<&[usize]> {

@@ -6,6 +6,7 @@ use crate::heading::Heading;
 use crate::options::ReadOptions;
 use crate::reading::Coordinate;
 use crate::record::Quantity;
+use crate::swing::Swing;
 use crate::unit::{Dimension, Unit};
 
 /// Kind of the cells of a column.
@@ -34,6 +35,9 @@ const NAMED: &str = "named in the options";
 const BY_NAME: &str = "by its name";
 const BY_UNIT: &str = "by its unit";
 const ONLY: &str = "the only other column of numbers";
+const BY_SWING: &str = "by its swing";
+/// Factor by which one column has to swing farther than another to be taken against the order of names.
+const FARTHER: f64 = 2.0;
 
 /// Names of time columns, most reliable first.
 const TIMES: &[&str] = &[
@@ -133,12 +137,27 @@ pub(crate) fn quantity(heading: &Heading, options: &ReadOptions) -> Quantity {
         .unwrap_or_default()
 }
 
-/// Returns the unit of a column that states none.
-pub(crate) fn assumed_unit(heading: &Heading, quantity: Quantity, coordinate: Option<Coordinate>) -> Unit {
+/// Returns `true` if a column is a time by its name or its unit.
+pub(crate) fn is_time(heading: &Heading) -> bool {
+    heading.time_unit().is_some() || heading.unit().is_none() && rank(heading, TIMES).is_some()
+}
+
+/// Half the range of values, in radians, above which angles without a unit are taken to be in degrees.
+const DEGREES_BEYOND: f64 = std::f64::consts::TAU;
+
+/// Returns the unit of a column that states none: the SI unit, or degrees for angles that would be turns, of
+/// which not all are whole numbers as counts are.
+pub(crate) fn assumed_unit(
+    heading: &Heading,
+    quantity: Quantity,
+    coordinate: Option<Coordinate>,
+    values: &[f64],
+) -> Unit {
     let length = rank(heading, LENGTHS).is_some()
         || quantity == Quantity::Acceleration && rank(heading, ACCELERATIONS).is_some();
     let coordinate = coordinate.unwrap_or(if length { Coordinate::Displacement } else { Coordinate::Angle });
     match (coordinate, quantity) {
+        (Coordinate::Angle, Quantity::Position) if reaches_turns(values) => Unit::Degree,
         (Coordinate::Angle, Quantity::Position) => Unit::Radian,
         (Coordinate::Angle, Quantity::Velocity) => Unit::RadianPerSecond,
         (Coordinate::Angle, Quantity::Acceleration) => Unit::RadianPerSecondSquared,
@@ -146,6 +165,12 @@ pub(crate) fn assumed_unit(heading: &Heading, quantity: Quantity, coordinate: Op
         (Coordinate::Displacement, Quantity::Velocity) => Unit::MeterPerSecond,
         (Coordinate::Displacement, Quantity::Acceleration) => Unit::MeterPerSecondSquared,
     }
+}
+
+fn reaches_turns(values: &[f64]) -> bool {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    0.5 * (highest - lowest) > DEGREES_BEYOND && values.iter().any(|value| value.fract() != 0.0)
 }
 
 /// Suitability of a column as the observed one; see [`Roles::score`].
@@ -170,6 +195,7 @@ impl Roles<'_> {
         find(&|heading| heading.title == name)
             .or_else(|| find(&|heading| heading.title.eq_ignore_ascii_case(name)))
             .or_else(|| find(&|heading| heading.words.join("_").eq_ignore_ascii_case(name)))
+            .or_else(|| find(&|heading| heading.without_unit().eq_ignore_ascii_case(name)))
             .ok_or_else(|| self.missing(name.to_owned(), key))
     }
 
@@ -214,8 +240,14 @@ impl Roles<'_> {
         }
     }
 
-    /// Returns the observed column, and a sentence if another one is preferred only by the order of names.
-    pub(crate) fn value(&self, time: Option<Pick>) -> Result<(Pick, Option<String>), Fault> {
+    /// Returns the observed column, and a sentence if another one could be it as well. Names decide between
+    /// columns that swing alike; a column that swings comes before one that does not, and one that swings
+    /// twice as far as the others of its unit before those. `swing` measures the motion in a column.
+    pub(crate) fn value(
+        &self,
+        time: Option<Pick>,
+        swing: &dyn Fn(usize) -> Swing,
+    ) -> Result<(Pick, Option<String>), Fault> {
         if let Some(name) = &self.asked().value {
             return Ok((Pick { at: self.named(name, "data.value")?, because: NAMED }, None));
         }
@@ -234,27 +266,99 @@ impl Roles<'_> {
             left.iter().filter_map(|(at, column)| Some((self.score(&column.heading)?, *at))).collect();
         found.sort_unstable();
         match found.as_slice() {
-            [(best, _), (next, _), ..] if best == next => {
-                let tied = |column: &Column| self.score(&column.heading).as_ref() == Some(best);
-                Err(Fault::Ambiguous {
-                    line: self.line,
-                    what: "the observed column",
-                    found: self.titles(tied),
-                    key: "data.value",
-                })
-            }
-            [(_, at), ..] => Ok((Pick { at: *at, because: BY_NAME }, self.as_likely(&found))),
+            [(_, at)] => Ok((Pick { at: *at, because: BY_NAME }, None)),
+            [(best, by_name), (next, _), ..] => match self.by_swing(&found, swing) {
+                Some(at) if at != *by_name => {
+                    Ok((Pick { at, because: BY_SWING }, self.by_swing_said(at, &found)))
+                }
+                // Of two columns of the same name and rank only the swing can decide.
+                None if best == next => {
+                    let tied = |column: &Column| self.score(&column.heading).as_ref() == Some(best);
+                    Err(self.ambiguous("the observed column", self.titles(tied), "data.value"))
+                }
+                _ => Ok((Pick { at: *by_name, because: BY_NAME }, self.as_likely(&found))),
+            },
             // Words in such a column are a fault of their line, which is reported when the cells are read.
             [] if let Some(at) = self.text_with_such_a_name() => Ok((Pick { at, because: BY_NAME }, None)),
-            [] => {
-                let other: Vec<usize> =
-                    left.iter().filter(|(_, column)| !drives(&column.heading)).map(|(at, _)| *at).collect();
-                match other.as_slice() {
-                    [at] => Ok((Pick { at: *at, because: ONLY }, None)),
-                    _ => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
+            [] => self.unnamed(&left, swing),
+        }
+    }
+
+    /// Returns the observed column among columns without a known name, as [`Roles::value`] does.
+    fn unnamed(
+        &self,
+        left: &[(usize, &Column)],
+        swing: &dyn Fn(usize) -> Swing,
+    ) -> Result<(Pick, Option<String>), Fault> {
+        let other: Vec<(Score, usize)> = left
+            .iter()
+            .filter(|(_, column)| !drives(&column.heading))
+            .map(|(at, _)| ((false, 0, 0, false), *at))
+            .collect();
+        match other.as_slice() {
+            [] => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
+            [(_, at)] => Ok((Pick { at: *at, because: ONLY }, None)),
+            _ => match self.by_swing(&other, swing) {
+                Some(at) => Ok((Pick { at, because: BY_SWING }, self.by_swing_said(at, &other))),
+                None => {
+                    let titles = self.titles_at(&other);
+                    Err(self.ambiguous("the observed column", titles, "data.value"))
                 }
+            },
+        }
+    }
+
+    /// Returns the column that the data choose: of those of the best quantity in which something swings, the
+    /// one whose swing is larger than the others' of its unit by [`FARTHER`], else the first by name. `None` if
+    /// names have to decide between columns of the same rank, and cannot.
+    fn by_swing(&self, found: &[(Score, usize)], swing: &dyn Fn(usize) -> Swing) -> Option<usize> {
+        let measured: Vec<(&Score, usize, Swing)> =
+            found.iter().map(|(score, at)| (score, *at, swing(*at))).collect();
+        let order = |score: &Score| (score.0, score.1);
+        let swings = measured.iter().filter(|(.., swing)| swing.is_regular);
+        let (best, by_name, first) = *swings.clone().min_by_key(|(score, at, _)| (**score, *at))?;
+        let unit = |at: usize| self.columns.get(at).and_then(|column| column.heading.unit()).map(Unit::si);
+        let factor = |at: usize| {
+            self.columns.get(at).and_then(|column| column.heading.unit()).map_or(1.0, Unit::to_si)
+        };
+        let like = swings.filter(|(score, at, _)| order(score) == order(best) && unit(*at) == unit(by_name));
+        let mut sizes: Vec<(f64, usize)> =
+            like.map(|(_, at, swing)| (swing.size * factor(*at), *at)).collect();
+        sizes.sort_by(|one, other| other.0.total_cmp(&one.0));
+        match sizes.as_slice() {
+            [(size, at), ..] if *size > FARTHER * first.size * factor(by_name) => Some(*at),
+            _ => {
+                let tied = |(_, at): &&(f64, usize)| {
+                    *at != by_name && measured.iter().any(|(score, other, _)| other == at && *score == best)
+                };
+                let close =
+                    sizes.iter().filter(tied).any(|(size, _)| *size * FARTHER > first.size * factor(by_name));
+                (!close).then_some(by_name)
             }
         }
+    }
+
+    /// Returns a sentence on the columns that were not taken, because another one swings.
+    fn by_swing_said(&self, taken: usize, found: &[(Score, usize)]) -> Option<String> {
+        let taken = &self.columns.get(taken)?.heading.title;
+        let others: Vec<(Score, usize)> = found
+            .iter()
+            .filter(|(_, at)| self.columns.get(*at).is_some_and(|column| column.heading.title != *taken))
+            .copied()
+            .collect();
+        let others = self.titles_at(&others);
+        (!others.is_empty()).then(|| {
+            format!("`{taken}` was taken, which swings most clearly, and not {others}; name another with `data.value`")
+        })
+    }
+
+    fn titles_at(&self, found: &[(Score, usize)]) -> String {
+        let titles = found.iter().filter_map(|(_, at)| self.columns.get(*at));
+        titles.map(|column| format!("`{}`", column.heading.title)).collect::<Vec<_>>().join(", ")
+    }
+
+    fn ambiguous(&self, what: &'static str, found: String, key: &'static str) -> Fault {
+        Fault::Ambiguous { line: self.line, what, found, key }
     }
 
     /// Returns a sentence if several columns hold the same quantity as the first of `found`, as roll and
@@ -342,12 +446,7 @@ impl Roles<'_> {
             [(best, _), (next, _), ..] if best == next => {
                 let titles = self.titles(|column| score(&column.heading) == Some(*best));
                 if self.options.driven {
-                    return Err(Fault::Ambiguous {
-                        line: self.line,
-                        what: "the input",
-                        found: titles,
-                        key: "data.input",
-                    });
+                    return Err(self.ambiguous("the input", titles, "data.input"));
                 }
                 Ok((
                     None,

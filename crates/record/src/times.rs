@@ -81,6 +81,8 @@ pub(crate) struct Times {
 pub(crate) enum Told {
     Stated,
     Magnitude,
+    /// Whole numbers with steps of at least two.
+    Whole,
     Assumed,
 }
 
@@ -107,13 +109,32 @@ pub(crate) fn seconds(stamps: &[Stamp], stated: Option<TimeUnit>, dates: bool) -
     }
     let (unit, told) = match stated.filter(|unit| *unit != TimeUnit::Iso) {
         Some(unit) => (unit, Told::Stated),
-        None => since_1970(first.value())
-            .map_or((TimeUnit::Second, Told::Assumed), |unit| (unit, Told::Magnitude)),
+        None => match (since_1970(first.value()), whole_steps(stamps)) {
+            (Some(unit), _) => (unit, Told::Magnitude),
+            (None, Some(unit)) => (unit, Told::Whole),
+            (None, None) => (TimeUnit::Second, Told::Assumed),
+        },
     };
     let from_first = unit.to_seconds(first.value()).abs() > LARGEST_KEPT_S;
     let origin = if from_first { first } else { Stamp { whole: 0, fraction: 0.0 } };
     let seconds = stamps.iter().map(|stamp| unit.to_seconds(stamp.since(origin))).collect();
     Times { seconds, unit, told, from_first }
+}
+
+/// Returns the unit of stamps that are whole numbers: milliseconds if they go on by 2 to 1000, microseconds by
+/// more. Steps of 1 may be numbers of samples.
+fn whole_steps(stamps: &[Stamp]) -> Option<TimeUnit> {
+    if stamps.iter().any(|stamp| stamp.value().fract() != 0.0) {
+        return None;
+    }
+    let steps = stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next.since(*one));
+    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    match *steps.get(steps.len() / 2)? {
+        step if (2.0..1e3).contains(&step) => Some(TimeUnit::Millisecond),
+        step if (1e3..1e6).contains(&step) => Some(TimeUnit::Microsecond),
+        _ => None,
+    }
 }
 
 /// Returns the unit in which a number is a time between 1980 and 2100, if there is one.

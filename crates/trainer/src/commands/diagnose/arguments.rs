@@ -122,6 +122,19 @@ pub(crate) struct Reading {
     /// Unit of the time column, iso for dates [default: by its header or its numbers, else s]
     #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(TimeUnit::NAMES))]
     pub(crate) time_unit: Option<String>,
+    /// Start of the part of the time to read, in seconds of the time column [default: the part in which it swings
+    /// freely, which is said]
+    #[arg(long = "from", value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) from_s: Option<f64>,
+    /// End of that part
+    #[arg(long = "to", value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) to_s: Option<f64>,
+    /// The run to read, from 1, if a file holds several, each with its own time [default: the first]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) run: Option<u16>,
+    /// Counts that make a turn, if the observed column holds counts of an encoder
+    #[arg(long, value_name = "N", value_parser = rate)]
+    pub(crate) counts_per_turn: Option<f64>,
     /// Lines to read, if a file holds several series: --where joint=elbow
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filter: Option<String>,
@@ -168,6 +181,10 @@ impl Default for Reading {
             unit: None,
             input_unit: None,
             time_unit: None,
+            from_s: None,
+            to_s: None,
+            run: None,
+            counts_per_turn: None,
             filter: None,
             missing: "segment".to_owned(),
             quantity: None,
@@ -196,10 +213,14 @@ impl Reading {
                     input_unit: self.input_unit.as_deref().and_then(word),
                     time_unit: self.time_unit.as_deref().and_then(word),
                     sample_rate_hz: self.sample_rate,
+                    run: self.run.map(usize::from),
+                    counts_per_turn: self.counts_per_turn,
                     filter: self.filter.as_deref().and_then(word),
                     missing: word(&self.missing).unwrap_or_default(),
                 },
                 quantity: self.quantity.map(QuantityChoice::quantity),
+                from_s: self.from_s,
+                to_s: self.to_s,
                 ..ReadOptions::default()
             },
             clock: word(&self.clock).unwrap_or_default(),
@@ -253,8 +274,13 @@ fn filter(text: &str) -> Result<String, String> {
     record::Filter::try_from(text.to_owned()).map(String::from)
 }
 
+fn seconds(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    number.filter(|number| number.is_finite()).ok_or_else(|| "expected a number of seconds".to_owned())
+}
+
 fn rate(text: &str) -> Result<f64, String> {
-    let rate: f64 = text.parse().map_err(|_| "expected a number of samples per second".to_owned())?;
+    let rate: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
     if rate.is_finite() && rate > 0.0 { Ok(rate) } else { Err("expected a number above 0".to_owned()) }
 }
 

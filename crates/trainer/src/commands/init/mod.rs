@@ -373,7 +373,12 @@ fn given(reading: &Reading) -> String {
     let Value::Object(stated) = stated else { return String::new() };
     let changed = stated.iter().filter(|(key, value)| usual.get(key.as_str()) != Some(value));
     let option = |(key, value): (&String, &Value)| {
-        let name = if key == "filter" { "where".to_owned() } else { key.replace('_', "-") };
+        let name = match key.as_str() {
+            "filter" => "where".to_owned(),
+            "from_s" => "from".to_owned(),
+            "to_s" => "to".to_owned(),
+            key => key.replace('_', "-"),
+        };
         match value {
             Value::Bool(_) => format!(" --{name}"),
             Value::String(text) => {
