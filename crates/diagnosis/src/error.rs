@@ -76,19 +76,6 @@ pub enum DiagnosisError {
         /// Ratio of the larger to the smaller period.
         ratio: f64,
     },
-    /// The angles are too large to be radians.
-    #[error(
-        "record {record} swings out to {largest:.1} rad, {turns:.1} full turns, about a spring: these look like \
-         degrees. Set unit = \"deg\""
-    )]
-    LooksLikeDegrees {
-        /// Number of the record, from 1.
-        record: usize,
-        /// Largest distance from the middle, in the unit taken to be radians.
-        largest: f64,
-        /// The same distance in turns.
-        turns: f64,
-    },
     /// The records observe different quantities or have different units.
     #[error(
         "record {record} observes another quantity, or in another unit, than record 1; diagnose them \

@@ -27,7 +27,10 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
     let whole = values.iter().all(|value| value.fract() == 0.0);
     let turns = periods(unit, whole).into_iter().filter_map(|period| {
         let values = unwrapped(values, period).filter(|_| plain >= 0.5 * period)?;
-        let finding = format!("the values wrap: each jump by about {period:.6} was taken for a passage of the end of the range, and undone");
+        let finding = format!(
+            "the values wrap: each jump by about {} was taken for a passage of the end of the range, and undone",
+            (1e3 * period).round() / 1e3
+        );
         Some(Decoded { values, finding })
     });
     let signs = BITS.filter(|_| whole).filter_map(|bits| {

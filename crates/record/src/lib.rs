@@ -16,6 +16,7 @@ mod dialect;
 mod doubts;
 mod error;
 mod file;
+mod free;
 mod heading;
 mod host_log;
 mod lattice;

@@ -1,6 +1,7 @@
 //! Content of a file's text, before it becomes a record.
 
 use crate::error::Fault;
+use crate::free::{FreeSwing, free_swings};
 use crate::options::ReadOptions;
 use crate::reading::{Coordinate, Reading};
 use crate::record::{InputRow, Record};
@@ -73,8 +74,40 @@ impl Parsed {
             Dimension::Angle => Coordinate::Angle,
             _ => Coordinate::Displacement,
         };
-        let (record, part_s) = record.between(options.from_s, options.to_s)?;
+        let mut findings = self.findings;
+        let stated = options.from_s.or(options.to_s).is_some();
+        let swings = if stated { Vec::new() } else { free_swings(&record) };
+        let part = largest_part(&record, &swings);
+        findings.extend(part.map(|part| part_said(&record, &swings, part)));
+        let [from_s, to_s] = part.map_or([options.from_s, options.to_s], |part| part.map(Some));
+        let (record, part_s) = record.between(from_s, to_s)?;
         let reading = Reading { quantity, coordinate, part_s, ..self.reading }.worded(rate_hz);
-        Ok((record, self.statements, self.findings, reading))
+        Ok((record, self.statements, findings, reading))
     }
+}
+
+/// Returns the stamps, in seconds, between which the free swing with the most half swings lies.
+fn largest_part(record: &Record, swings: &[FreeSwing]) -> Option<[f64; 2]> {
+    let largest = swings.iter().max_by_key(|swing| swing.half_swings)?;
+    ends(record, largest)
+}
+
+fn ends(record: &Record, swing: &FreeSwing) -> Option<[f64; 2]> {
+    let [from, to] = swing.samples;
+    Some([*record.stamps_s().get(from)?, *record.stamps_s().get(to)?])
+}
+
+/// Returns a sentence on the part of a record that is read, and on its other free swings.
+fn part_said(record: &Record, swings: &[FreeSwing], [from, to]: [f64; 2]) -> String {
+    let others = swings.iter().filter_map(|swing| ends(record, swing)).filter(|other| *other != [from, to]);
+    let others: Vec<String> = others.map(|[from, to]| format!("{from:.3} s to {to:.3} s")).collect();
+    let also = if others.is_empty() {
+        String::new()
+    } else {
+        format!(", and so it does from {}", others.join(" and from "))
+    };
+    format!(
+        "it swings freely from {from:.3} s to {to:.3} s, which was read{also}; the rest is at rest, handled, struck or stopped; \
+         `data.from_s` and `data.to_s` take another part"
+    )
 }

@@ -28,6 +28,14 @@ pub struct ColumnReading {
     pub because: String,
 }
 
+impl ColumnReading {
+    /// Returns `true` if the unit is that of the header.
+    #[must_use]
+    pub fn is_stated_by_header(&self) -> bool {
+        self.because.ends_with("unit from the header")
+    }
+}
+
 /// Interpretation of a file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]

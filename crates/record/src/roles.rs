@@ -296,7 +296,11 @@ impl Roles<'_> {
             .map(|(at, _)| ((false, 0, 0, false), *at))
             .collect();
         match other.as_slice() {
-            [] => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
+            // A voltage or a current beside a time alone is a sensor's.
+            [] => match left {
+                [(at, _)] => Ok((Pick { at: *at, because: ONLY }, None)),
+                _ => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
+            },
             [(_, at)] => Ok((Pick { at: *at, because: ONLY }, None)),
             _ => match self.by_swing(&other, swing) {
                 Some(at) => Ok((Pick { at, because: BY_SWING }, self.by_swing_said(at, &other))),

@@ -9,6 +9,17 @@ use thiserror::Error;
 /// Reason why records and a nominal simulator give no answer. Messages name the options of the command line.
 #[derive(Debug, Error)]
 pub enum WorkflowError {
+    /// The header states radians, and the angles are too large for it.
+    #[error(
+        "{file} swings out to {largest:.1} rad by its header, {:.1} full turns: these look like degrees. Set --unit deg, or \
+         --unit rad if they are radians", largest / std::f64::consts::TAU
+    )]
+    LooksLikeDegrees {
+        /// Name of the record.
+        file: String,
+        /// Largest distance from the middle, in the unit taken to be radians.
+        largest: f64,
+    },
     /// A record cannot be read; the message names options in place of configuration keys.
     #[error("{}", in_options(&.0.to_string()))]
     Record(RecordError),
@@ -109,7 +120,10 @@ pub fn in_options(text: &str) -> String {
     let mut told = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('`').unwrap_or((part, ""));
-        told.push_str(&format!("--{}{rest}", key.trim_end_matches("_hz").replace('_', "-")));
+        told.push_str(&format!(
+            "--{}{rest}",
+            key.trim_end_matches("_hz").trim_end_matches("_s").replace('_', "-")
+        ));
     }
     told.replace("data.format = \"csv\"", "--format csv")
 }

@@ -121,7 +121,6 @@ impl Question {
             | E::NoMotion { record, .. }
             | E::MissingInput { record }
             | E::AnotherPeriod { record, .. }
-            | E::LooksLikeDegrees { record, .. }
             | E::MixedQuantities { record } => *record,
             _ => 1,
         };

@@ -160,6 +160,7 @@ impl Loaded {
             let file = self.source.path.clone();
             return Err(WorkflowError::MissingInput { file, columns: self.columns.clone() });
         }
+        self.check_turns()?;
         let (clock, believed) = (self.believed()?, self.clock_of(ClockChoice::Auto)?);
         let stated = Statements { origin: self.origin, ..Statements::default() };
         let summary = DataSummary::new(record, &self.source, &clock, &believed, stated);
@@ -187,6 +188,24 @@ impl Loaded {
             driven: record.input().is_some(),
             rate_hz: clock.sample_rate_hz,
         })
+    }
+}
+
+impl Loaded {
+    /// Checks that angles in radians, if only the header says so, stay within one turn.
+    fn check_turns(&self) -> Result<(), WorkflowError> {
+        let read = &self.source.reading.value;
+        let by_header = read.unit.as_deref() == Some(Unit::Radian.symbol()) && read.is_stated_by_header();
+        let values = self.record.values().iter().copied();
+        let (lowest, highest) = values
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lowest, highest), value| {
+                (lowest.min(value), highest.max(value))
+            });
+        let largest = 0.5 * (highest - lowest);
+        if by_header && largest > std::f64::consts::TAU {
+            return Err(WorkflowError::LooksLikeDegrees { file: self.source.path.clone(), largest });
+        }
+        Ok(())
     }
 }
 

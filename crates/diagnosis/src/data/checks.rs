@@ -4,8 +4,7 @@ use crate::data::observations::Observations;
 use crate::data::period::swing;
 use crate::error::DiagnosisError;
 use crate::noise::periodogram::strongest_period;
-use dynamics::{Coordinate, NominalSimulator};
-use record::Quantity;
+use dynamics::NominalSimulator;
 use std::f64::consts::TAU;
 
 /// Minimum number of samples, and of cycles, in a record.
@@ -89,11 +88,6 @@ fn own_period(
     let ratio = ratio(measured_s);
     if ratio >= ANOTHER_SYSTEM {
         return Err(DiagnosisError::AnotherPeriod { record: number, nominal_s, measured_s, ratio });
-    }
-    let largest = 0.5 * span(&record.values);
-    let turns = largest / TAU;
-    if nominal.coordinate() == Coordinate::Angle && record.quantity == Quantity::Position && turns > 1.0 {
-        return Err(DiagnosisError::LooksLikeDegrees { record: number, largest, turns });
     }
     Ok(Some(measured_s))
 }

@@ -1,0 +1,320 @@
+//! The part of a record in which the system swings freely, between hands that lift, hold, strike and stop it.
+
+use crate::record::Record;
+
+/// A free swing within a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FreeSwing {
+    /// Indices of its first and last sample.
+    pub(crate) samples: [usize; 2],
+    /// Number of its half swings.
+    pub(crate) half_swings: usize,
+}
+
+/// Smallest number of half swings of a free swing.
+const FEWEST: usize = 5;
+/// Part of the largest half swing below which one says nothing about a hand.
+const LARGE: f64 = 0.2;
+/// Growth of a half swing, as a part of the one before, above which energy came in at once.
+const STRUCK: f64 = 1.15;
+/// Height of a half swing, as a part of the one before, below which it was stopped, unless the ones before
+/// fell as fast.
+const STOPPED: f64 = 0.6;
+/// Ratio of the durations of neighboring half swings above which they do not belong to one free swing.
+const UNEVEN: f64 = 1.6;
+/// Duration of a plateau, in half swings, from which something was held.
+const HELD: f64 = 1.25;
+
+/// Duration of missing samples, in half swings, from which a turning point may be missing.
+const GAP: f64 = 0.25;
+
+/// A turning point of a record.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    /// Index of the sample.
+    at: usize,
+    /// Indices of the first and last sample of the plateau around it.
+    plateau: [usize; 2],
+}
+
+/// Finds the free swings of a record, if there is something beside them: a change of energy within one half
+/// swing (a lift, a strike, a stop), a plateau longer than a half swing, or half swings of uneven duration.
+/// Empty for a record with an input, without such a change, or without a free swing of [`FEWEST`] half swings.
+///
+/// A free swing grows at most slowly, as beating and self-excited ones do, and its height falls at most as
+/// fast as before; so only changes at once, of half swings that are not small beside the largest, are taken
+/// for a hand's.
+pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
+    if record.input().is_some() {
+        return Vec::new();
+    }
+    let values = record.values();
+    let (mut turns, least) = turning_points(values);
+    // A record that begins within a half swing has its first turning point after that.
+    let begins_within = HalfSwings::new(record, &turns, least).begins_within();
+    turns.drain(..usize::from(begins_within));
+    let breaks = HalfSwings::new(record, &turns, least).breaks();
+    if breaks.is_empty() {
+        return Vec::new();
+    }
+    let ends = || breaks.iter().copied();
+    let starts = std::iter::once(0).chain(ends());
+    let pieces = starts.zip(ends().chain([turns.len()]));
+    let swing = |(from, to): (usize, usize)| {
+        // Turning points from..=to bound the half swings of the piece; after a stop the last one is not free.
+        let last = if to == turns.len() { to.checked_sub(1)? } else { to };
+        let half_swings = last.checked_sub(from)?;
+        let first = turns.get(from)?;
+        let start = if from == 0 { 0 } else { first.plateau[1] };
+        let end = if to == turns.len() { values.len() - 1 } else { turns.get(last)?.at };
+        (half_swings >= FEWEST && end > start).then_some(FreeSwing { samples: [start, end], half_swings })
+    };
+    pieces.filter_map(swing).collect()
+}
+
+/// Returns the standard deviation of white noise, from the median size of the fourth differences, in which a
+/// swing of twelve samples leaves a hundredth of its amplitude; of white noise of variance s², they have the
+/// variance 70 s².
+fn noise(values: &[f64]) -> f64 {
+    let fourth = values.windows(5).filter_map(|five| match five {
+        [a, b, c, d, e] => Some((a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs()),
+        _ => None,
+    });
+    let mut fourth: Vec<f64> = fourth.collect();
+    fourth.sort_by(f64::total_cmp);
+    // Fewer than five values have no noise.
+    fourth.get(fourth.len() / 2).map_or(0.0, |median| median / (0.674_5 * 70_f64.sqrt()))
+}
+
+/// Returns the turning points of a series: extremes from which it turns back by eight times its noise and a
+/// thirtieth of its range at least. Returns that height as well.
+fn turning_points(values: &[f64]) -> (Vec<Turn>, f64) {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let noise = noise(values);
+    let least = (8.0 * noise).max((highest - lowest) / 30.0);
+    let (mut found, mut side) = (Vec::new(), 0.0);
+    let (mut high, mut low) = ((0, f64::NEG_INFINITY), (0, f64::INFINITY));
+    for (at, value) in values.iter().copied().enumerate() {
+        if value > high.1 {
+            high = (at, value);
+        }
+        if value < low.1 {
+            low = (at, value);
+        }
+        if side >= 0.0 && high.1 - value > least {
+            found.push(high.0);
+            (side, low) = (-1.0, (at, value));
+        } else if side <= 0.0 && value - low.1 > least {
+            found.push(low.0);
+            (side, high) = (1.0, (at, value));
+        }
+    }
+    let within = |at: usize| {
+        let beside =
+            |other: Option<&usize>| other.map(|other| (value(values, *other) - value(values, at)).abs());
+        let index = found.partition_point(|other| *other < at);
+        let before = index.checked_sub(1).and_then(|index| found.get(index));
+        let heights = [beside(before), beside(found.get(index + 1))];
+        let height = heights.into_iter().flatten().fold(f64::INFINITY, f64::min);
+        let band = 0.02 * height.min(highest - lowest) + 6.0 * noise;
+        let near = |other: &usize| (value(values, *other) - value(values, at)).abs() <= band;
+        let first = (0..at).rev().take_while(near).last().unwrap_or(at);
+        let last = (at..values.len()).take_while(near).last().unwrap_or(at);
+        Turn { at, plateau: [first, last] }
+    };
+    (found.iter().map(|at| within(*at)).collect(), least)
+}
+
+fn value(values: &[f64], at: usize) -> f64 {
+    // Turning points lie within the series.
+    values.get(at).copied().unwrap_or(f64::NAN)
+}
+
+/// Half swings between the turning points of a record, and what is usual among them.
+struct HalfSwings<'a> {
+    turns: &'a [Turn],
+    /// Heights, in the record's unit.
+    heights: Vec<f64>,
+    /// Durations by the stamps, in seconds, and by the rows, from one plateau to the next.
+    durations: [Vec<f64>; 2],
+    /// Times of the samples by the stamps, in seconds, and their rows.
+    times: [Vec<f64>; 2],
+    /// Median durations of the large half swings.
+    usual: [f64; 2],
+    /// Height from which a half swing is large.
+    large: f64,
+    /// Smallest height of a half swing that is seen.
+    least: f64,
+}
+
+impl<'a> HalfSwings<'a> {
+    fn new(record: &Record, turns: &'a [Turn], least: f64) -> Self {
+        let values = record.values();
+        let times = [record.stamps_s().to_vec(), record.row_numbers()];
+        let pairs = || turns.iter().zip(turns.iter().skip(1));
+        let heights: Vec<f64> =
+            pairs().map(|(one, next)| (value(values, next.at) - value(values, one.at)).abs()).collect();
+        let large = (LARGE * heights.iter().copied().fold(0.0, f64::max)).max(2.0 * least);
+        let middle =
+            |turn: &Turn, times: &[f64]| 0.5 * turn.plateau.map(|at| value(times, at)).iter().sum::<f64>();
+        let usual = times.each_ref().map(|times| {
+            let between = pairs().map(|(one, next)| middle(next, times) - middle(one, times));
+            let of_large = heights.iter().zip(between).filter(|(height, _)| **height > large);
+            let mut of_large: Vec<f64> = of_large.map(|(_, duration)| duration).collect();
+            of_large.sort_by(f64::total_cmp);
+            // Nothing is longer than usual if no half swing is large.
+            of_large.get(of_large.len() / 2).copied().unwrap_or(f64::INFINITY)
+        });
+        let durations = |times: &[f64], usual: f64| -> Vec<f64> {
+            let ends = |turn: &Turn| {
+                let [first, last] = turn.plateau.map(|at| value(times, at));
+                let middle = middle(turn, times);
+                // A half swing begins where something that was held is let go.
+                if last - first > HELD * usual { (first, last) } else { (middle, middle) }
+            };
+            pairs().map(|(one, next)| ends(next).0 - ends(one).1).collect()
+        };
+        let [of_stamps, of_rows] = usual;
+        let [stamps, rows] = &times;
+        let durations = [durations(stamps, of_stamps), durations(rows, of_rows)];
+        Self { turns, heights, durations, times, usual, large, least }
+    }
+
+    /// Returns the turning points, by their number, at which one piece of the record ends and another begins.
+    fn breaks(&self) -> Vec<usize> {
+        (1..self.turns.len()).filter(|number| self.is_break(*number)).collect()
+    }
+
+    fn is_break(&self, number: usize) -> bool {
+        let height = |back: usize| number.checked_sub(back).and_then(|at| self.heights.get(at)).copied();
+        let Some(before) = height(1) else { return false };
+        // After the last turning point nothing is seen to move.
+        let after = height(0).unwrap_or(0.0);
+        if before.max(after) < self.large || self.has_gap(number) {
+            return false;
+        }
+        let struck = after > STRUCK * before && after - before > self.large;
+        let expected = height(2).map_or(before, |earlier| before - (earlier - before).max(0.0));
+        let seen = expected > 2.0 * self.least
+            && before > self.large
+            && (number + 2 < self.turns.len() || self.goes_on());
+        let stopped = number > 1 && seen && after < STOPPED * expected;
+        let uneven = before.min(after) > self.large
+            && self.both(|durations, _| {
+                let pair = number.checked_sub(1).and_then(|at| durations.get(at)).zip(durations.get(number));
+                pair.is_some_and(|(one, next)| one.max(*next) > UNEVEN * one.min(*next))
+            });
+        struck || stopped || uneven || self.is_held(number)
+    }
+
+    /// Returns `true` if a condition holds for the durations by the stamps and for those by the rows: clocks
+    /// of hosts stand still and jump though the samples are even, and rows may be missing.
+    fn both(&self, holds: impl Fn(&[f64], f64) -> bool) -> bool {
+        self.durations.iter().zip(self.usual).all(|(durations, usual)| holds(durations, usual))
+    }
+
+    /// Returns `true` if the first turning point is the beginning of the record, and not at rest or held there.
+    fn begins_within(&self) -> bool {
+        let at_start = self.turns.first().is_some_and(|turn| turn.plateau[0] == 0);
+        at_start && !self.is_held(0)
+    }
+
+    fn is_held(&self, number: usize) -> bool {
+        let Some([first, last]) = self.turns.get(number).map(|turn| turn.plateau) else { return false };
+        let long = |(times, usual): (&Vec<f64>, f64)| value(times, last) - value(times, first) > HELD * usual;
+        number + 1 < self.turns.len() && self.times.iter().zip(self.usual).all(long)
+    }
+
+    /// Returns `true` if the record lasts for two half swings after its last turning point.
+    fn goes_on(&self) -> bool {
+        let Some(last) = self.turns.last() else { return false };
+        let rest = |times: &[f64]| times.last().map(|end| end - value(times, last.at));
+        self.times
+            .iter()
+            .zip(self.usual)
+            .all(|(times, usual)| rest(times).is_some_and(|rest| rest > 2.0 * usual))
+    }
+
+    /// Returns `true` if samples are missing for a quarter of a half swing beside a turning point.
+    fn has_gap(&self, number: usize) -> bool {
+        let turn = |number: usize| self.turns.get(number).map(|turn| turn.at);
+        let from = number.checked_sub(2).and_then(turn).unwrap_or(0);
+        let to = turn(number + 1).unwrap_or(usize::MAX);
+        self.times.iter().zip(self.usual).any(|(times, usual)| {
+            let part = times.get(from..=to.min(times.len() - 1)).unwrap_or(times);
+            part.windows(2).any(|pair| matches!(pair, [one, next] if next - one > GAP * usual))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::free_swings;
+    use crate::record::{Quantity, Record};
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    const RATE: f64 = 100.0;
+
+    fn record(duration_s: f64, noise: f64, motion: impl Fn(f64) -> f64) -> Record {
+        let mut draws = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        let times: Vec<f64> = (0..(duration_s * RATE) as usize).map(|at| at as f64 / RATE).collect();
+        let mut value = |time: &f64| {
+            let draw: f64 = StandardNormal.sample(&mut draws);
+            motion(*time) + noise * draw
+        };
+        let values = times.iter().map(&mut value).collect();
+        Record::new(times, values, None, Quantity::Position, "rad").unwrap()
+    }
+
+    fn decay(time: f64) -> f64 {
+        (-0.1 * time).exp() * (6.0 * time).cos()
+    }
+
+    fn parts(record: &Record) -> Vec<[f64; 2]> {
+        let swings = free_swings(record);
+        swings.iter().map(|swing| swing.samples.map(|at| record.stamps_s()[at])).collect()
+    }
+
+    #[test]
+    fn a_lift_a_hold_and_a_stop_are_left_out() {
+        for noise in [1e-4, 0.02] {
+            let lifted = record(24.0, noise, |time| match time {
+                time if time < 2.0 => 0.0,
+                time if time < 3.5 => 0.5 - 0.5 * (std::f64::consts::PI * (time - 2.0) / 1.5).cos(),
+                time if time < 5.0 => 1.0,
+                time => decay(time - 5.0),
+            });
+            let found = parts(&lifted);
+            assert!(found.len() == 1 && (found[0][0] - 5.0).abs() < 0.15 && found[0][1] > 23.9, "{found:?}");
+            let stopped = record(24.0, noise, |time| if time < 12.0 { decay(time) } else { 0.0 });
+            let found = parts(&stopped);
+            assert!(found.len() == 1 && found[0][0] == 0.0 && (found[0][1] - 12.0).abs() < 0.7, "{found:?}");
+            let again =
+                record(24.0, noise, |time| if time < 12.0 { decay(time) } else { 1.4 * decay(time - 12.0) });
+            let found = parts(&again);
+            assert!(found.len() == 2 && (found[1][0] - 12.0).abs() < 0.7, "{found:?}");
+        }
+    }
+
+    /// Beating, growth, dry friction, a shift of the rest position and a swing over many decades are free.
+    #[test]
+    fn a_free_swing_is_left_whole() {
+        let dry = |time: f64| (1.0 - 0.06 * time).max(0.0) * (6.0 * time).cos();
+        let motions: [&dyn Fn(f64) -> f64; 6] = [
+            &decay,
+            &|time| (-0.01 * time).exp() * ((6.0 * time).cos() + 0.9 * (6.4 * time).cos()),
+            &|time| 0.1 * (0.08 * time).exp() * (6.0 * time).sin(),
+            &dry,
+            &|time| decay(time) + 0.05 * time,
+            &|time| (-0.6 * time).exp() * (6.0 * time).cos(),
+        ];
+        for (number, motion) in motions.iter().enumerate() {
+            for noise in [1e-5, 0.01, 0.05] {
+                let found = parts(&record(30.0, noise, motion));
+                assert!(found.is_empty(), "{number} {noise}: {found:?}");
+            }
+        }
+    }
+}
