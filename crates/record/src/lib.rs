@@ -9,6 +9,7 @@
 
 mod clock;
 mod columns;
+mod container;
 mod copies;
 mod csv_file;
 mod dialect;
