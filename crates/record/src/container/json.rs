@@ -133,7 +133,8 @@ fn object_of(object: &Map<String, Value>, bytes: usize) -> Result<String, String
     }
     match inside.as_slice() {
         [(name, items)] if others(name).all(|other| is_index(other, items)) => {
-            let titles = others(name).find_map(|(_, titles)| words(titles));
+            let fits = |titles: &Vec<String>| width(items) == Some(titles.len());
+            let titles = others(name).find_map(|(_, titles)| words(titles).filter(fits));
             array_of(items, titles, &remarks, bytes)
         }
         _ => columns_of(&arrays, &remarks, bytes),
@@ -147,8 +148,8 @@ fn is_index((name, items): &Series<'_>, table: &[&Value]) -> bool {
         || (name == "index" && items.len() == table.len())
 }
 
-/// Returns the table inside an object without columns: columns that are objects with numbered entries, as
-/// pandas writes them, or the member that is a table.
+/// Returns the table inside an object without columns: columns with numbered entries or numbered
+/// records, as pandas writes them, or the member that is a table.
 fn nested(object: &Map<String, Value>, bytes: usize) -> Result<String, String> {
     let members: Vec<(&String, &Map<String, Value>)> =
         object.iter().filter_map(|(key, value)| Some((key, value.as_object()?))).collect();
@@ -158,6 +159,10 @@ fn nested(object: &Map<String, Value>, bytes: usize) -> Result<String, String> {
         let columns: Vec<Series<'_>> =
             members.iter().map(|(key, map)| ((*key).clone(), map.values().collect())).collect();
         return columns_of(&columns, &[], bytes);
+    }
+    if !members.is_empty() && numbered(object) {
+        let records = members.iter().filter_map(|(key, _)| object.get(*key)).collect();
+        return columns_of(&[(String::new(), records)], &[], bytes);
     }
     let has_array = |map: &Map<String, Value>| map.values().any(Value::is_array);
     let mut tables = members.iter().filter(|(key, map)| *key == "data" || has_array(map));
@@ -184,6 +189,7 @@ fn array_of(
     if let Some(width) = width(items) {
         // The first of the rows may hold the names.
         let header = items.first().and_then(|row| words(&row.as_array()?.iter().collect::<Vec<_>>()));
+        // A header alone has no rows below it.
         let rows = items.get(usize::from(header.is_some())..).unwrap_or_default();
         if width.saturating_mul(rows.len()) > bytes {
             return Err("its rows have too different lengths".to_owned());

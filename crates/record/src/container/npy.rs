@@ -262,6 +262,7 @@ impl Field {
             "c" => return Err("its numbers are complex".to_owned()),
             _ => {}
         }
+        // Only times have a unit, in brackets.
         let (digits, unit) = rest.split_once('[').unwrap_or((rest, ""));
         let width: usize = digits.parse().map_err(|_| other())?;
         let unit = unit.trim_end_matches(']');

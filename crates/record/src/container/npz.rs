@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::io::Read;
 
 /// Largest size of all unpacked arrays, in bytes: an archive can be a thousand times smaller than that.
-const LARGEST: usize = 1 << 30;
+const LARGEST: usize = 1 << 28;
 /// Beginning of an entry.
 const LOCAL: &[u8] = b"PK\x03\x04";
 /// Number of bytes of the end of the directory, without the comment after it.

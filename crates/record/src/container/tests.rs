@@ -261,6 +261,12 @@ fn wave_files_are_read_as_fractions_of_full_scale() {
     let size = streamed.len() - 6;
     streamed[size..size + 4].copy_from_slice(&[255; 4]);
     assert_eq!(table(&streamed), "time_s,channel_1,channel_2\n0,-1,0.5\n");
+    // A recorder that was cut off announces no samples, and fewer bytes than there are.
+    streamed[size..size + 4].fill(0);
+    assert_eq!(table(&streamed), "time_s,channel_1,channel_2\n0,-1,0.5\n");
+    let whole = streamed.len() as u32 - 8;
+    streamed[4..8].copy_from_slice(&whole.to_le_bytes());
+    assert_eq!(table(&streamed), "time_s,channel_1,channel_2\n");
     assert!(problem(&wav(7, 1, &[0, 0])).contains("encoding 7, 8 bits"));
     assert!(problem(b"RIFF\0\0\0\0WAVE").contains("no samples"));
 }
@@ -285,12 +291,14 @@ fn json_tables_are_read_in_every_layout() {
         pairs.replace("],[", "]\n[") + "\n",
         format!("[[\"time\",\"angle\"],{pairs}]"),
         format!("[[{times}],[{angles}]]"),
+        format!("{{\"tags\":[\"a\"],\"data\":[{pairs}]}}"),
         format!("{{\"columns\":[\"time\",\"angle\"],\"data\":[{pairs}]}}"),
         format!(
             "{{\"time\":{{{}}},\"angle\":{{{}}}}}",
             rows(|index, t, _| format!("\"{index}\":{t}"), ","),
             rows(|index, _, a| format!("\"{index}\":{a}"), ",")
         ),
+        format!("{{{}}}", rows(|index, t, a| format!("\"{index}\":{{\"t\":{t},\"angle\":{a}}}"), ",")),
     ] {
         holds_the_swing(file.as_bytes());
     }

@@ -58,10 +58,12 @@ fn read(bytes: &[u8]) -> Result<String, String> {
 /// Returns the format and the bytes of the samples.
 fn chunks(bytes: &[u8]) -> Result<(Format, &[u8]), String> {
     let (mut at, mut format) = (12, None);
+    // The size in the file's first chunk counts all bytes after it.
+    let unfinished = length_at(bytes, 4, 4).is_none_or(|size| size < bytes.len() - 8);
     while let (Some(name), Some(size)) = (bytes.get(at..at + 4), length_at(bytes, at + 4, 4)) {
         // A recorder that was cut off has not yet written its size, or has fewer bytes than it announced.
         let rest = bytes.get(at + 8..).unwrap_or_default();
-        let unknown = name == b"data" && (size == 0 || size == 0xffff_ffff);
+        let unknown = name == b"data" && (size == 0xffff_ffff || size == 0 && unfinished);
         let body = rest.get(..size).filter(|_| !unknown).unwrap_or(rest);
         match (name, format.take()) {
             (b"fmt ", _) => format = Some(self::format(body)?),
