@@ -1,5 +1,6 @@
 //! Reading of a file into a record and its source.
 
+use crate::container;
 use crate::csv_file;
 use crate::error::{Fault, RecordError};
 use crate::host_log;
@@ -40,7 +41,12 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source),
 /// As [`read_file`].
 pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Record, Source), RecordError> {
     let parse = || {
-        let text = text_of(bytes)?;
+        let text = match container::text(bytes) {
+            Some(table) => {
+                Cow::Owned(table.map_err(|unread| Fault::Unreadable { problem: unread.to_string() })?)
+            }
+            None => text_of(bytes)?,
+        };
         // Spreadsheets write a byte-order mark at the beginning.
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         if text.trim().is_empty() {

@@ -10,6 +10,7 @@
 mod clock;
 mod coding;
 mod columns;
+mod container;
 mod copies;
 mod csv_file;
 mod dialect;

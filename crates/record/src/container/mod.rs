@@ -1,0 +1,71 @@
+//! Files that hold a table in another form than lines of text: recognized by their content and turned into
+//! the text of a plain table.
+//!
+//! The text has a header and one line per sample, as the reader of the `csv` format expects it; that reader
+//! chooses columns and units. Names of files play no role, because instruments and people rename them.
+
+mod json;
+mod literal;
+mod lvm;
+mod npy;
+mod npz;
+mod sheet;
+#[cfg(test)]
+mod tests;
+mod wav;
+
+use crate::file::text_of;
+use thiserror::Error;
+
+/// A file of a known kind that cannot be read. The text continues `is`.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{kind}, but {problem}; {remedy}")]
+pub(crate) struct Unread {
+    /// Kind of the file, with its article.
+    pub(crate) kind: &'static str,
+    /// Reason for which it cannot be read, as a clause.
+    pub(crate) problem: String,
+    /// Instruction that makes it readable.
+    pub(crate) remedy: String,
+}
+
+/// Returns the text of a plain table with the content of a file, or `None` if the file is of none of the
+/// kinds that this module knows, in which case it may be a plain table itself.
+pub(crate) fn text(bytes: &[u8]) -> Option<Result<String, Unread>> {
+    wav::text(bytes).or_else(|| npy::text(bytes)).or_else(|| npz::text(bytes)).or_else(|| textual(bytes))
+}
+
+/// Returns the table of a file that is text, but not lines of columns.
+fn textual(bytes: &[u8]) -> Option<Result<String, Unread>> {
+    // Most files are plain tables: these first signs spare them from being decoded twice.
+    let start = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start().first()?;
+    if !matches!(start, b'L' | b'{' | b'[' | b'<' | 0xfe | 0xff) {
+        return None;
+    }
+    let text = text_of(bytes).ok()?;
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    lvm::text(text).or_else(|| phyphox(text)).or_else(|| json::text(text))
+}
+
+/// Returns the refusal of an experiment's description by the app phyphox, which is XML and holds no samples.
+fn phyphox(text: &str) -> Option<Result<String, Unread>> {
+    let start: String = text.chars().take(4000).collect();
+    (start.starts_with('<') && start.contains("<phyphox")).then(|| {
+        Err(Unread {
+            kind: "an experiment's description by phyphox",
+            problem: "it says how to measure and holds no samples".to_owned(),
+            remedy: "in the app, open the recording, choose Export Data and then CSV".to_owned(),
+        })
+    })
+}
+
+/// Returns the unsigned number in `size` bytes, lowest byte first, at an offset.
+fn number_at(bytes: &[u8], at: usize, size: usize) -> Option<u64> {
+    let bytes = bytes.get(at..at.checked_add(size)?)?;
+    Some(bytes.iter().rev().fold(0, |number, byte| (number << 8) | u64::from(*byte)))
+}
+
+/// Returns the number at an offset as a length or an offset.
+fn length_at(bytes: &[u8], at: usize, size: usize) -> Option<usize> {
+    number_at(bytes, at, size)?.try_into().ok()
+}
