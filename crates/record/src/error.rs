@@ -39,6 +39,12 @@ pub enum Fault {
         /// Instruction for extracting its columns.
         remedy: &'static str,
     },
+    /// The file has a known format, and cannot be read.
+    #[error("is {problem}")]
+    Container {
+        /// Format of the file, the problem, and what to do.
+        problem: String,
+    },
     /// The file contains bytes that are not text.
     #[error("is no text (byte {offset}); expected a text file with columns, in UTF-8, UTF-16 or Latin-1")]
     NotText {

@@ -37,6 +37,7 @@ mod swing;
 mod table;
 #[cfg(test)]
 mod tests;
+mod text;
 mod times;
 mod unit;
 mod words;

@@ -2,7 +2,7 @@
 
 use crate::clock::{Clock, ClockChoice};
 use crate::error::RecordError;
-use crate::file::{Source, bytes_of, read_text, text_of};
+use crate::file::{Source, bytes_of, read_text, table_text};
 use crate::options::ReadOptions;
 use crate::record::Record;
 use crate::roles::Kind;
@@ -47,7 +47,7 @@ pub fn look(path: &Path, options: &ReadOptions) -> Result<Look, RecordError> {
     let bytes = bytes_of(path)?;
     let (record, source) = read_text(&name, &bytes, options)?;
     let clock = Clock::new(&record, ClockChoice::Auto).map_err(|fault| fault.in_file(&name))?;
-    let text = text_of(&bytes).map_err(|fault| fault.in_file(&name))?;
+    let text = table_text(&bytes).map_err(|fault| fault.in_file(&name))?;
     let columns = match source.reading.format.as_str() {
         "csv" => columns(text.trim_start_matches('\u{feff}'), &source),
         _ => Vec::new(),

@@ -9,12 +9,13 @@ mod literal;
 mod lvm;
 mod npy;
 mod npz;
+mod serial;
 mod sheet;
 #[cfg(test)]
 mod tests;
 mod wav;
 
-use crate::file::text_of;
+use crate::text::text_of;
 use thiserror::Error;
 
 /// A file of a known kind that cannot be read. The text continues `is`.
@@ -32,7 +33,8 @@ pub(crate) struct Unread {
 /// Returns the text of a plain table with the content of a file, or `None` if the file is of none of the
 /// kinds that this module knows, in which case it may be a plain table itself.
 pub(crate) fn text(bytes: &[u8]) -> Option<Result<String, Unread>> {
-    wav::text(bytes).or_else(|| npy::text(bytes)).or_else(|| npz::text(bytes)).or_else(|| textual(bytes))
+    let binary = || wav::text(bytes).or_else(|| npy::text(bytes)).or_else(|| npz::text(bytes));
+    binary().or_else(|| textual(bytes)).or_else(|| serial::text(bytes).map(Ok))
 }
 
 /// Returns the table of a file that is text, but not lines of columns.
