@@ -421,8 +421,9 @@ fn input_scale(
     let heading = heading(table, input.at);
     let stated = options.columns.input_unit.or(heading.unit());
     // A commanded position has the unit of the position in the same file.
-    let commands =
-        ["command", "cmd", "setpoint", "target", "desired", "action"].iter().any(|word| heading.has(word));
+    let commands = ["command", "cmd", "setpoint", "target", "desired", "action", "soll", "sollwert"]
+        .iter()
+        .any(|word| heading.has(word));
     let unit = stated.or(Some(observed).filter(|_| commands));
     let taken = unit.map_or("its own unit", Unit::symbol);
     findings.extend(unknown_unit(heading, stated.is_none(), taken, "data.input_unit"));

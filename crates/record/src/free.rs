@@ -25,6 +25,13 @@ const UNEVEN: f64 = 1.6;
 /// Duration of a plateau, in half swings, from which something was held.
 const HELD: f64 = 1.25;
 
+/// Part of the time between the first and the last turning point that the free swings have to last.
+const MOST: f64 = 0.6;
+/// Part of the half swings of a free swing that may be larger than the ones before them.
+const RISES: f64 = 0.1;
+/// Factor between the falls of the last half swings and the median fall before them from which a hand slows
+/// the swing: no friction takes more from a small swing than from a large one.
+const SLOWED: f64 = 4.0;
 /// Duration of missing samples, in half swings, from which a turning point may be missing.
 const GAP: f64 = 0.25;
 
@@ -39,11 +46,10 @@ struct Turn {
 
 /// Finds the free swings of a record, if there is something beside them: a change of energy within one half
 /// swing (a lift, a strike, a stop), a plateau longer than a half swing, or half swings of uneven duration.
-/// Empty for a record with an input, without such a change, or without a free swing of [`FEWEST`] half swings.
+/// Empty for a record with an input, without such a change, or whose free swings are not most of it.
 ///
-/// A free swing grows at most slowly, as beating and self-excited ones do, and its height falls at most as
-/// fast as before; so only changes at once, of half swings that are not small beside the largest, are taken
-/// for a hand's.
+/// A free swing is one whose half swings fall; beating and forced ones rise again, are not recognized here
+/// and stay whole.
 pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     if record.input().is_some() {
         return Vec::new();
@@ -53,23 +59,19 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     // A record that begins within a half swing has its first turning point after that.
     let begins_within = HalfSwings::new(record, &turns, least).begins_within();
     turns.drain(..usize::from(begins_within));
-    let breaks = HalfSwings::new(record, &turns, least).breaks();
-    if breaks.is_empty() {
-        return Vec::new();
-    }
+    let half_swings = HalfSwings::new(record, &turns, least);
+    let breaks = half_swings.breaks();
     let ends = || breaks.iter().copied();
     let starts = std::iter::once(0).chain(ends());
     let pieces = starts.zip(ends().chain([turns.len()]));
-    let swing = |(from, to): (usize, usize)| {
-        // Turning points from..=to bound the half swings of the piece; after a stop the last one is not free.
-        let last = if to == turns.len() { to.checked_sub(1)? } else { to };
-        let half_swings = last.checked_sub(from)?;
-        let first = turns.get(from)?;
-        let start = if from == 0 { 0 } else { first.plateau[1] };
-        let end = if to == turns.len() { values.len() - 1 } else { turns.get(last)?.at };
-        (half_swings >= FEWEST && end > start).then_some(FreeSwing { samples: [start, end], half_swings })
-    };
-    pieces.filter_map(swing).collect()
+    let found: Vec<FreeSwing> = pieces.filter_map(|(from, to)| half_swings.free(from, to)).collect();
+    let stamps = record.stamps_s();
+    let between = |[from, to]: [usize; 2]| value(stamps, to) - value(stamps, from);
+    let (Some(first), Some(last)) = (turns.first(), turns.last()) else { return Vec::new() };
+    let moves = between([first.at, last.at]);
+    let is_most = found.iter().map(|swing| between(swing.samples)).sum::<f64>() > MOST * moves;
+    let is_whole = found.iter().any(|swing| swing.samples == [0, values.len() - 1]);
+    if is_most && !is_whole { found } else { Vec::new() }
 }
 
 /// Returns the standard deviation of white noise, from the median size of the fourth differences, in which a
@@ -196,7 +198,8 @@ impl<'a> HalfSwings<'a> {
         }
         let struck = after > STRUCK * before && after - before > self.large;
         let expected = height(2).map_or(before, |earlier| before - (earlier - before).max(0.0));
-        let seen = expected > 2.0 * self.least
+        let fall = before - expected;
+        let seen = expected > (2.0 * self.least).max(3.0 * fall)
             && before > self.large
             && (number + 2 < self.turns.len() || self.goes_on());
         let stopped = number > 1 && seen && after < STOPPED * expected;
@@ -206,6 +209,45 @@ impl<'a> HalfSwings<'a> {
                 pair.is_some_and(|(one, next)| one.max(*next) > UNEVEN * one.min(*next))
             });
         struck || stopped || uneven || self.is_held(number)
+    }
+
+    /// Returns the free swing between two turning points, by their numbers, the second of which ends it; `None`
+    /// if there is none.
+    fn free(&self, from: usize, to: usize) -> Option<FreeSwing> {
+        let is_last = to == self.turns.len();
+        let last = if is_last { to.checked_sub(1)? } else { to };
+        let heights = self.heights.get(from..last)?;
+        let slowed = self.slowed(heights);
+        let count = slowed.unwrap_or(heights.len());
+        let pairs = || heights.iter().zip(heights.iter().skip(1)).take(count.saturating_sub(1));
+        let rises = pairs().filter(|(one, next)| **next > 1.03 * **one + 0.25 * self.least).count();
+        let rises_far = pairs().any(|(one, next)| next - one > 0.5 * self.large);
+        let grows = heights.first() < count.checked_sub(1).and_then(|last| heights.get(last));
+        if count < FEWEST || rises as f64 > RISES * count as f64 || rises_far || grows {
+            return None;
+        }
+        let samples = self.times.first()?.len();
+        let start = if from == 0 && !self.is_held(0) { 0 } else { self.turns.get(from)?.plateau[1] };
+        let end = if is_last && slowed.is_none() { samples - 1 } else { self.turns.get(from + count)?.at };
+        (end > start).then_some(FreeSwing { samples: [start, end], half_swings: count })
+    }
+
+    /// Returns the number of half swings before a hand slows the swing: all later ones that are large fall far
+    /// more than the median of those before.
+    fn slowed(&self, heights: &[f64]) -> Option<usize> {
+        let falls: Vec<f64> =
+            heights.iter().zip(heights.iter().skip(1)).map(|(one, next)| one - next).collect();
+        (FEWEST..=falls.len().checked_sub(1)?)
+            .find(|number| {
+                let (before, after) = falls.split_at(*number);
+                let mut sorted = before.to_vec();
+                sorted.sort_by(f64::total_cmp);
+                let Some(median) = sorted.get(sorted.len() / 2) else { return false };
+                let beside = heights.get(*number).copied().unwrap_or(f64::INFINITY);
+                let least = (SLOWED * median).max(0.05 * beside).max(0.5 * self.least);
+                beside > self.large && after.iter().all(|fall| *fall > least)
+            })
+            .map(|number| number + 1)
     }
 
     /// Returns `true` if a condition holds for the durations by the stamps and for those by the rows: clocks

@@ -87,14 +87,19 @@ const POSITIONS: &[&str] = &[
     "x",
     "z",
     "state",
+    "measured",
+    "ist",
+    "istwert",
 ];
 const VELOCITIES: &[&str] = &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot"];
 /// Name that requests no input, unless a column has this name.
 const NO_INPUT: &str = "none";
 const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
 const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
-const INPUTS: &[&str] =
-    &["command", "cmd", "u", "input", "voltage", "setpoint", "target", "action", "desired", "current"];
+const INPUTS: &[&str] = &[
+    "command", "cmd", "u", "input", "voltage", "setpoint", "target", "action", "desired", "soll", "sollwert",
+    "current",
+];
 /// Words in the names of lengths, for columns without a unit.
 const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];
 

@@ -9,6 +9,7 @@ mod literal;
 mod lvm;
 mod npy;
 mod npz;
+mod scope;
 mod serial;
 mod sheet;
 #[cfg(test)]
@@ -34,7 +35,8 @@ pub(crate) struct Unread {
 /// kinds that this module knows, in which case it may be a plain table itself.
 pub(crate) fn text(bytes: &[u8]) -> Option<Result<String, Unread>> {
     let binary = || wav::text(bytes).or_else(|| npy::text(bytes)).or_else(|| npz::text(bytes));
-    binary().or_else(|| textual(bytes)).or_else(|| serial::text(bytes).map(Ok))
+    let lines = || serial::text(bytes).or_else(|| scope::text(bytes)).map(Ok);
+    binary().or_else(|| textual(bytes)).or_else(lines)
 }
 
 /// Returns the table of a file that is text, but not lines of columns.

@@ -8,6 +8,7 @@ use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
+use envelope::RecommendedPipeline;
 use identify::{Estimated, LinearOscillator, identify};
 use record::{Fault, Look, ReadOptions, look};
 use report::format::{significant, with_uncertainty};
@@ -106,18 +107,21 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let coordinate = coordinate_of(look.source.reading.coordinate);
     let name = path.display().to_string();
     let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
-    let mut next = vec![(
-        "what a linear oscillator with these numbers lacks",
-        format!(
-            "trainer diagnose {} --nominal {}{}{}",
-            path_word(log),
-            path_word(&folder.join("nominal.toml")),
-            given(reading),
-            if bias { " --remove-mean" } else { "" }
-        ),
-    )];
+    let mut next = Vec::new();
+    if is_diagnosable(&surest) {
+        next.push((
+            "what a linear oscillator with these numbers lacks",
+            format!(
+                "trainer diagnose {} --nominal {}{}{}",
+                path_word(log),
+                path_word(&folder.join("nominal.toml")),
+                given(reading),
+                if bias { " --remove-mean" } else { "" }
+            ),
+        ));
+    }
     // Only a free decay has an envelope from which a damping ratio can be estimated.
-    if oscillator.input_gain.is_none() {
+    if oscillator.input_gain.is_none() && has_envelope(look) {
         let path = path_from(&folder, path).display().to_string();
         files.push(("estimate.toml", files::configuration(&path, &look.source.reading.options())));
         next.push((
@@ -126,6 +130,21 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         ));
     }
     Ok(Found { surest, each, coordinate, folder, files, next })
+}
+
+/// Returns `true` if a diagnosis can take a record: it is driven, or has a spring and enough cycles.
+fn is_diagnosable(looked: &Looked) -> bool {
+    let oscillator = &looked.oscillator;
+    let times = &looked.look.clock.times_s;
+    let duration_s = times.first().zip(times.last()).map(|(first, last)| last - first);
+    let frequency = oscillator.natural_frequency_hz();
+    let cycles = frequency.zip(duration_s).map(|(frequency, duration_s)| frequency.value * duration_s);
+    oscillator.input_gain.is_some() || cycles.is_some_and(|cycles| cycles >= FEW_CYCLES)
+}
+
+/// Returns `true` if a record has the turning points from which a damping ratio can be estimated.
+fn has_envelope(look: &Look) -> bool {
+    RecommendedPipeline::DEFAULT.extract(&look.record, &look.clock).is_ok()
 }
 
 /// Returns the folder for the files of a log: its name without its extension, or its name with `-nominal`
@@ -269,14 +288,23 @@ impl Found {
         let next: Vec<String> =
             self.next.iter().map(|(what, command)| format!("  {command}\n      {what}")).collect();
         format!(
-            "{}{}\n\n{}\n\nwrote {}\n\nnext{}:\n{}",
+            "{}{}\n\n{}\n\nwrote {}\n\n{}",
             self.of_each(),
             self.surest.look.source.path,
             table(&[], rows),
             written.collect::<Vec<_>>().join(" and "),
-            if is_built_here() { " (for trainer, type cargo run -p trainer --)" } else { "" },
-            next.join("\n")
+            self.next_said(&next)
         )
+    }
+
+    fn next_said(&self, next: &[String]) -> String {
+        if next.is_empty() {
+            return "next: neither a diagnosis nor an estimate can take this record; give a longer one, or another part of it \
+                    with --from and --to"
+                .to_owned();
+        }
+        let built = if is_built_here() { " (for trainer, type cargo run -p trainer --)" } else { "" };
+        format!("next{built}:\n{}", next.join("\n"))
     }
 
     /// Formats a table of the logs, if there are several, with a lead-in to the log that the rest is about.
@@ -307,6 +335,7 @@ impl Found {
         read.chain(bias(&self.surest.look.record))
             .chain(apart(&self.each))
             .chain(self.few_cycles())
+            .chain(self.no_swing())
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -332,6 +361,16 @@ impl Found {
                  hardly oscillates",
                 100.0 * part
             )
+        })
+    }
+
+    /// Returns a remark if the record has no natural frequency.
+    fn no_swing(&self) -> Option<String> {
+        let free = self.surest.oscillator.input_gain.is_none();
+        (free && self.surest.oscillator.natural_frequency_hz().is_none()).then(|| {
+            "no oscillation: the record comes to rest without a swing, as an overdamped or critically damped system \
+             does, or it drifts; neither a frequency nor a damping ratio can be read from it"
+                .to_owned()
         })
     }
 
