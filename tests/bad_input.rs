@@ -144,7 +144,8 @@ fn a_file_of_another_kind() {
     let commas = decay(50).replace('.', ",");
     refused(commas.as_bytes(), &[], &["record.csv:2: 4 fields under a header of 2", "decimal points"]);
     let headless: Vec<String> = decay(50).lines().skip(1).map(str::to_owned).collect();
-    refused(headless.join("\n").as_bytes(), &[], &["record.csv:1: the first line holds numbers, `0.000,"]);
+    let alone: Vec<&str> = headless.iter().filter_map(|line| line.split(',').nth(1)).collect();
+    refused(alone.join("\n").as_bytes(), &[], &["record.csv: no column is a time", "data.sample_rate_hz"]);
     let log = decay(50);
     refused(log.as_bytes(), &["data.format=host-log"], &["record.csv:1: ", "set data.format = \"csv\""]);
 }

@@ -23,6 +23,7 @@ mod diagnose;
 mod documents;
 mod explain;
 mod exports;
+mod field;
 mod fuzz_regressions;
 mod gaps;
 mod honesty;

@@ -97,6 +97,7 @@ impl From<WorkflowError> for Error {
             | E::MissingInput { .. }
             | E::OtherUnit { .. }
             | E::SameRecord { .. }
+            | E::LooksLikeDegrees { .. }
             | E::Identify { .. } => Self::Record(error),
         }
     }

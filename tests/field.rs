@@ -1,0 +1,108 @@
+//! Tests on logs of the kinds that people have, in their folder beside the project; skipped with a notice if
+//! they are absent. Each is looked at by `trainer init` without knowing more than a new user.
+
+use crate::support::{number, root, trainer};
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// Log with the options a user gives, and the frequency in hertz and damping ratio that it has, each with the
+/// largest relative deviation.
+type Log = (&'static str, &'static [&'static str], [f64; 2], [f64; 2]);
+
+/// Published or made values, from the notes beside the logs; least squares on the samples where those state
+/// none.
+const LOGS: &[Log] = &[
+    ("tracker-xy/tracker.txt", &[], [0.413, 0.01], [0.0023, 0.3]),
+    ("phyphox-gyro-axis/Raw Data.csv", &[], [0.773, 0.01], [0.0083, 0.4]),
+    ("handled-start-and-stop/gyro.csv", &[], [0.773, 0.01], [0.0083, 0.4]),
+    ("handled-start-and-stop/handled.csv", &[], [0.770, 1e-3], [0.0080, 0.02]),
+    ("multi-run-own-time/pasco2.csv", &[], [1.1, 1e-3], [0.012, 0.02]),
+    ("multi-run-own-time/pasco2.csv", &["--run", "2"], [1.1, 1e-3], [0.012, 0.02]),
+    ("multi-run-own-time/pasco2.csv", &["--value", "Position (m) Run #2"], [1.1, 1e-3], [0.012, 0.02]),
+    ("multi-run-own-time/vernier2.csv", &["--value", "Latest: Position (m)"], [1.1, 1e-3], [0.012, 0.02]),
+    ("sparse-command-column/joint.csv", &[], [2.135, 0.03], [0.5217, 0.15]),
+    ("encoder-wrap-and-counts/deg-wrap180.csv", &[], [1.1005, 1e-3], [0.030, 0.01]),
+    ("encoder-wrap-and-counts/ticks-plain.csv", &[], [1.1005, 1e-3], [0.030, 0.01]),
+    ("encoder-wrap-and-counts/ticks-signmag.csv", &[], [1.1005, 1e-3], [0.030, 0.01]),
+    (
+        "encoder-wrap-and-counts/ticks-wrap4096.csv",
+        &["--counts-per-turn", "4096"],
+        [1.1005, 1e-3],
+        [0.030, 0.01],
+    ),
+    ("torsion-many-turns/torsion-deg.csv", &[], [0.21, 1e-3], [0.006, 0.01]),
+    ("labview-lvm/no-time-column-decimal-comma.lvm", &["--input", "none"], [18.0, 5e-3], [0.01, 0.1]),
+    ("labview-lvm/one-time-column.lvm", &[], [12.4, 1e-3], [0.011, 0.02]),
+    ("no-header/two-columns.txt", &[], [0.5615, 5e-3], [0.0083, 0.1]),
+    (
+        "no-header/one-column-1kHz.txt",
+        &["--sample-rate", "1000", "--unit", "deg"],
+        [1.25, 1e-3],
+        [0.01, 0.01],
+    ),
+    ("no-header/serial-monitor.txt", &[], [1.3, 1e-3], [0.02, 0.01]),
+    ("units-row-in-blanks/free-decay.out", &[], [0.00934, 5e-3], [0.062, 0.2]),
+    ("units-row-in-blanks/short.txt", &[], [1.2733, 1e-3], [0.0125, 0.01]),
+    ("step-response/step.csv", &[], [0.0747, 0.01], [0.611, 0.01]),
+    ("differenced-encoder-velocity/velocity.csv", &[], [1.2, 2e-3], [0.02, 0.1]),
+];
+
+fn field(name: &str) -> Option<PathBuf> {
+    let path = root().join("../shared/field").join(name);
+    if !path.exists() {
+        eprintln!("SKIPPED: {} is absent, so that nothing was checked on it", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+/// Looks at a log; returns the answer, or the message of a refusal.
+fn look(path: &std::path::Path, options: &[&str]) -> Result<Value, String> {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let mut arguments = vec!["init", path.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
+    arguments.extend(options);
+    let output = trainer(&arguments);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    serde_json::from_slice(&output.stdout).map_err(|_| message)
+}
+
+#[test]
+fn every_log_has_its_frequency_and_its_damping() {
+    for (name, options, [frequency, frequency_part], [ratio, ratio_part]) in LOGS {
+        let Some(path) = field(name) else { continue };
+        let found = look(&path, options).unwrap_or_else(|message| panic!("{name}: {message}"));
+        let near = |found: f64, expected: f64, part: f64| {
+            assert!((found / expected - 1.0).abs() < part, "{name} {options:?}: {found} for {expected}");
+        };
+        near(number(&found, "/oscillator/natural_frequency_hz/value"), *frequency, *frequency_part);
+        near(number(&found, "/oscillator/damping_ratio/value"), *ratio, *ratio_part);
+    }
+}
+
+/// Regression: a lift by hand was fitted as dynamics.
+#[test]
+fn a_lift_by_hand_is_left_out_and_said() {
+    let Some(path) = field("rest-lift-hold-release/free_oscillation.csv") else { return };
+    let found = look(&path, &[]).unwrap();
+    let part = &found["record"]["reading"]["part_s"];
+    let from = part[0].as_f64().unwrap();
+    assert!((from - 4.8).abs() < 0.05, "{part}");
+    assert!(found["record"]["findings"].to_string().contains("swings freely from 4.8"), "{found}");
+    let whole = look(&path, &["--from", "0"]).unwrap();
+    assert_eq!(whole["record"]["samples"], 3398);
+    let message = look(&path, &["--from", "1", "--to", "1.01"]).unwrap_err();
+    assert!(message.contains("set --from and --to to times between them"), "{message}");
+}
+
+#[test]
+fn without_a_swing_no_command_is_printed_that_fails() {
+    for name in ["critically-damped/seismometer.txt", "critically-damped/overdamped.csv"] {
+        let Some(path) = field(name) else { continue };
+        let found = look(&path, &[]).unwrap();
+        let next: Vec<&str> =
+            found["next"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
+        assert!(!next.iter().any(|line| line.contains("estimate.toml")), "{name}: {next:?}");
+        assert!(!found["record"]["findings"].as_array().unwrap().is_empty(), "{name}");
+    }
+}
