@@ -10,11 +10,13 @@
 
 mod decay;
 mod error;
+mod modes;
 mod observed;
 mod oscillator;
 mod weak;
 
 pub use error::IdentifyError;
+pub use modes::{Mode, modes};
 pub use oscillator::{Basis, Estimated, LinearOscillator};
 
 use observed::input;

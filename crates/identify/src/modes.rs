@@ -1,0 +1,276 @@
+//! Modes of a free decay: damped sinusoids that a record is the sum of.
+//!
+//! Lines are added one at a time. Each starts from the strongest line of the residuals or from the poles of a
+//! Hankel matrix (Kung 1978; Hua, Sarkar 1990), and all are refined together by variable projection (Golub,
+//! Pereyra 1973) on all samples at their times.
+
+mod fit;
+mod pair;
+mod pencil;
+mod spectrum;
+
+use crate::Estimated;
+use crate::observed::input;
+use fit::{Fit, Fitted, Line};
+use pencil::Blocks;
+use record::{Clock, Record};
+use spectrum::Spectrum;
+use std::f64::consts::TAU;
+
+/// Fewest samples with modes.
+const FEWEST_SAMPLES: usize = 32;
+/// Most lines, with the harmonics of modes.
+const MOST_LINES: usize = 6;
+/// Most lines that are tried in vain.
+const MOST_REFUSED: usize = 4;
+/// Fewest periods of a mode in a record.
+const FEWEST_PERIODS: f64 = 3.0;
+/// Highest frequency, in samples per period.
+const FEWEST_PER_PERIOD: f64 = 2.5;
+/// Samples per period that are enough for a search.
+const ENOUGH_PER_PERIOD: f64 = 10.0;
+/// Most samples that first guesses are compared on.
+const MOST_PICKED: usize = 8192;
+/// Smallest amplitude, in standard errors.
+const CLEAR: f64 = 6.0;
+/// Smallest share of the explained variance.
+const LEAST_SHARE: f64 = 1e-4;
+/// Smallest gain of the score by an added line.
+const LEAST_GAIN: f64 = 10.0;
+/// Relative distance from a multiple of a stronger line's frequency within which a line is a harmonic.
+const HARMONIC: f64 = 0.01;
+/// Multiples of a frequency that count as harmonics, each with the largest power of such a harmonic over that
+/// of the fundamental: high harmonics of a swing are weak.
+const MULTIPLES: [(f64, f64); 4] = [(2.0, 1.0), (3.0, 1.0), (4.0, 0.01), (5.0, 0.01)];
+/// Shares of a record, from its start, in which lines are searched: those that decay fast fill no more.
+const SPANS: [f64; 3] = [1.0, 0.25, 0.0625];
+
+/// Damped sinusoid of a free decay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// Undamped natural frequency √(ω² + λ²)/2π, in Hz, from the angular frequency ω and the decay λ of the
+    /// damped sinusoid.
+    pub frequency_hz: Estimated,
+    /// Damping ratio λ/√(ω² + λ²), dimensionless.
+    pub damping_ratio: Estimated,
+    /// Amplitude at the start of the record, in the record's unit.
+    pub amplitude: f64,
+    /// Part of the modes' power over the record, between 0 and 1.
+    pub share: f64,
+}
+
+/// Returns the modes of a free decay under a clock, the most powerful first.
+///
+/// The record is taken as a sum of damped sinusoids and a slow trend: poles of the Hankel matrix of the record
+/// (Kung 1978; Hua, Sarkar 1990, equation 14), refined by variable projection (Golub, Pereyra 1973). A mode
+/// has an amplitude of more than 6 standard errors, is no multiple of a stronger mode's frequency, and is told
+/// from the changes that a nonlinear swing of one mode makes by itself. Standard errors are from the Jacobian
+/// and the residuals' spectrum beside the mode, so that they hold for correlated residuals too. The result is
+/// empty for a record with an input that changes, without motion, or without a clear mode. The run time is
+/// nearly linear in the number of samples.
+#[must_use]
+pub fn modes(record: &Record, clock: &Clock) -> Vec<Mode> {
+    if input(record, clock).is_some() {
+        return Vec::new();
+    }
+    // A record without motion has no modes.
+    Samples::new(record, clock).and_then(|samples| samples.modes()).unwrap_or_default()
+}
+
+/// Times from 0 to 1 and values minus their mean over their standard deviation.
+struct Samples {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    duration_s: f64,
+    /// Standard deviation of the values, in the record's unit.
+    size: f64,
+}
+
+impl Samples {
+    fn new(record: &Record, clock: &Clock) -> Option<Self> {
+        let (first, last) = (*clock.times_s.first()?, *clock.times_s.last()?);
+        let (values, count) = (record.values(), record.len() as f64);
+        let duration_s = last - first;
+        let mean = values.iter().sum::<f64>() / count;
+        let size = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let usable = values.len() >= FEWEST_SAMPLES && duration_s > 0.0 && size.is_finite();
+        // Rounding leaves a deviation to values that are all the same.
+        (usable && size > 1e-12 * mean.abs() && size > 0.0).then(|| Self {
+            times: clock.times_s.iter().map(|time| (time - first) / duration_s).collect(),
+            values: values.iter().map(|value| (value - mean) / size).collect(),
+            duration_s,
+            size,
+        })
+    }
+
+    /// Returns the means of as many neighbors as a highest angular frequency allows; no mean spans a gap.
+    fn thinned(&self, omega: f64) -> Self {
+        let step = 1.0 / self.times.len() as f64;
+        let together = (TAU / omega / step / ENOUGH_PER_PERIOD).floor().clamp(1.0, 1e6);
+        let (mut times, mut values) = (Vec::new(), Vec::new());
+        let (mut start, mut sums, mut count) = (f64::NEG_INFINITY, (0.0, 0.0), 0.0);
+        for (&time, &value) in self.times.iter().zip(&self.values) {
+            if count >= together || (count > 0.0 && time - start > 1.5 * together * step) {
+                times.push(sums.0 / count);
+                values.push(sums.1 / count);
+                (sums, count) = ((0.0, 0.0), 0.0);
+            }
+            if count == 0.0 {
+                start = time;
+            }
+            sums = (sums.0 + time, sums.1 + value);
+            count += 1.0;
+        }
+        if count >= 0.5 * together {
+            times.push(sums.0 / count);
+            values.push(sums.1 / count);
+        }
+        Self { times, values, duration_s: self.duration_s, size: self.size }
+    }
+
+    /// Returns every so many samples, few enough to compare first guesses quickly.
+    fn picked(&self) -> Self {
+        let stride = self.times.len().div_ceil(MOST_PICKED).max(1);
+        let picked = |column: &[f64]| column.iter().step_by(stride).copied().collect();
+        Self { times: picked(&self.times), values: picked(&self.values), ..*self }
+    }
+
+    fn modes(&self) -> Option<Vec<Mode>> {
+        let mut best = Fit::new(self, &[])?;
+        let (mut excluded, mut refused) = (Vec::new(), 0);
+        while best.lines.len() < MOST_LINES && refused < MOST_REFUSED {
+            let Some((fit, fitted)) = self.extended(&best, &excluded) else { break };
+            match self.refusal(&best, &fit, &fitted) {
+                None => best = fit,
+                Some(band) => {
+                    excluded.push(band);
+                    refused += 1;
+                }
+            }
+        }
+        let best = Fit::refined(self, &best.guesses())?;
+        Some(self.reported(&best))
+    }
+
+    /// Returns the best fit with one more line than a given one, with the samples that it is a fit of.
+    fn extended(&self, best: &Fit, excluded: &[(f64, f64)]) -> Option<(Fit, Self)> {
+        let residuals = best.residuals(self, &[]);
+        let range = (TAU * FEWEST_PERIODS, TAU * self.times.len() as f64 / FEWEST_PER_PERIOD);
+        let known = best.guesses();
+        let mut added: Vec<Line> = Vec::new();
+        for span in SPANS {
+            let Some(omega) = Spectrum::new(self, &residuals, span).peak((range.0 / span, range.1), excluded)
+            else {
+                continue;
+            };
+            added.extend([0.5, 2.0, 8.0].map(|decay| Line { omega, decay: decay / span }.bounded()));
+            added.extend(Blocks::new(self, &residuals, omega, span).lines(1));
+        }
+        let mut starts: Vec<Vec<Line>> =
+            added.iter().map(|line| known.iter().copied().chain([*line]).collect()).collect();
+        for (number, line) in known.iter().enumerate() {
+            let values = best.residuals(self, &[number]);
+            for span in SPANS {
+                let pair = Blocks::new(self, &values, line.omega, span).lines(2);
+                let others = known.iter().enumerate().filter(|(other, _)| *other != number);
+                starts.push(others.map(|(_, line)| *line).chain(pair).collect());
+            }
+        }
+        let allowed = |line: &Line| {
+            let known = known.iter().any(|known| (known.omega - line.omega).abs() < TAU * 0.5);
+            let outside = excluded.iter().all(|(from, to)| line.omega < *from || line.omega > *to);
+            line.omega >= range.0 && line.omega <= range.1 && (known || outside)
+        };
+        starts.retain(|lines| lines.len() == known.len() + 1 && lines.iter().all(allowed));
+        let highest = starts.iter().flatten().map(|line| line.omega).fold(range.0, f64::max);
+        let samples = self.thinned(highest);
+        let few = samples.picked();
+        let mut ranked: Vec<Fit> = starts.iter().filter_map(|lines| Fit::new(&few, lines)).collect();
+        ranked.sort_by(|one, other| one.rest.total_cmp(&other.rest));
+        let refined = ranked.iter().take(3).filter_map(|fit| Fit::refined(&few, &fit.guesses()));
+        let usable = refined.filter(|fit| fit.guesses().iter().all(allowed));
+        let fit = usable.min_by(|one, other| one.rest.total_cmp(&other.rest))?;
+        let fit = Fit::refined(&samples, &fit.guesses())?;
+        fit.guesses().iter().all(allowed).then_some((fit, samples))
+    }
+
+    /// Returns the band of frequencies to leave out if one of the lines of a fit is no mode.
+    fn refusal(&self, before: &Fit, fit: &Fit, samples: &Self) -> Option<(f64, f64)> {
+        let noise = Spectrum::new(self, &fit.residuals(self, &[]), 1.0);
+        let power: f64 = fit.lines.iter().map(|line| line.energy).sum();
+        let around = |line: &Fitted, width: f64| (line.line.omega - width, line.line.omega + width);
+        let weakest = fit.lines.iter().min_by(|one, other| one.energy.total_cmp(&other.energy))?;
+        let narrow = TAU.max(0.5 * weakest.line.decay);
+        let level = |line: &Fitted| noise.background(line.line.omega, fit.count);
+        // Bayesian information criterion for four more numbers and noise of a known level.
+        let gain = Fit::new(samples, &before.guesses())?.rest - fit.rest;
+        let price = 4.0 * (fit.count as f64).ln() + LEAST_GAIN;
+        if gain < price * level(weakest) {
+            return Some(around(weakest, narrow));
+        }
+        let unclear = |line: &&Fitted| {
+            line.amplitude() < CLEAR * (line.variances[2] * level(line)).sqrt()
+                || line.energy < LEAST_SHARE * power
+        };
+        if let Some(line) = fit.lines.iter().find(unclear) {
+            return Some(around(line, narrow));
+        }
+        let mut order: Vec<usize> = (0..fit.lines.len()).collect();
+        // Every number in the order is that of a line.
+        let energy = |number: &usize| fit.lines.get(*number).map_or(0.0, |line| line.energy);
+        order.sort_by(|one, other| energy(other).total_cmp(&energy(one)));
+        for (place, &weak) in order.iter().enumerate() {
+            let stronger = order.iter().take(place);
+            let alike = stronger.copied().find(|strong| !pair::are_two(samples, fit, *strong, weak));
+            if let Some((strong, weak)) =
+                alike.and_then(|strong| fit.lines.get(strong).zip(fit.lines.get(weak)))
+            {
+                let distance = 1.5 * (strong.line.omega - weak.line.omega).abs();
+                return Some(around(strong, distance.max(narrow)));
+            }
+        }
+        None
+    }
+
+    fn reported(&self, fit: &Fit) -> Vec<Mode> {
+        let noise = Spectrum::new(self, &fit.residuals(self, &[]), 1.0);
+        let is_harmonic = |line: &Fitted| {
+            let of = |other: &Fitted| {
+                let (ratio, power) = (line.line.omega / other.line.omega, line.energy / other.energy);
+                MULTIPLES.iter().any(|(times, most)| (ratio / times - 1.0).abs() < HARMONIC && power < *most)
+            };
+            fit.lines.iter().any(of)
+        };
+        let mut lines: Vec<&Fitted> = fit.lines.iter().filter(|line| !is_harmonic(line)).collect();
+        lines.sort_by(|one, other| other.energy.total_cmp(&one.energy));
+        let power: f64 = lines.iter().map(|line| line.energy).sum();
+        let mode = |line: &&Fitted| {
+            let Line { omega, decay } = line.line;
+            let natural = omega.hypot(decay);
+            let level = noise.noise(omega, fit.count);
+            let [omega_error, decay_error, _] = line.variances.map(|variance| (variance * level).sqrt());
+            let rate = natural / TAU / self.duration_s;
+            Mode {
+                frequency_hz: Estimated {
+                    value: rate,
+                    std_error: rate * (omega * omega_error).hypot(decay * decay_error) / natural.powi(2),
+                },
+                damping_ratio: Estimated {
+                    value: decay / natural,
+                    std_error: (omega * omega * decay_error).hypot(omega * decay * omega_error)
+                        / natural.powi(3),
+                },
+                amplitude: line.amplitude() * self.size,
+                share: line.energy / power,
+            }
+        };
+        let is_finite = |mode: &Mode| {
+            let errors = mode.frequency_hz.std_error + mode.damping_ratio.std_error;
+            (mode.frequency_hz.value + errors + mode.share + mode.amplitude).is_finite()
+        };
+        lines.iter().map(mode).filter(is_finite).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
