@@ -18,6 +18,5 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ),
     ("oracle", "classical::trust_region::minimize", "one iteration of a published method, in its order"),
     ("record", "clock::decide", "one question after another, each with its sentence"),
-    ("record", "csv_file::parse", "one header, its columns and its rows"),
     ("symbolic", "constants::fit_constants", "one iteration of a published method, in its order"),
 ];

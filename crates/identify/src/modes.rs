@@ -9,8 +9,8 @@ mod pair;
 mod pencil;
 mod spectrum;
 
-use crate::Estimated;
 use crate::observed::input;
+use crate::oscillator::{Basis, Estimated, LinearOscillator};
 use fit::{Fit, Fitted, Line};
 use pencil::Blocks;
 use record::{Clock, Record};
@@ -57,6 +57,18 @@ pub struct Mode {
     pub amplitude: f64,
     /// Part of the modes' power over the record, between 0 and 1.
     pub share: f64,
+}
+
+impl Mode {
+    /// Returns an oscillator with the frequency and the damping of this mode, one of `modes` of a record.
+    #[must_use]
+    pub fn oscillator(&self, of_record: LinearOscillator, modes: usize) -> LinearOscillator {
+        let omega = self.frequency_hz.times(TAU);
+        let std_error = 2.0 * omega.value * omega.std_error;
+        let stiffness = Estimated { value: omega.value.powi(2), std_error };
+        let damping = self.damping_ratio.times(2.0 * omega.value);
+        LinearOscillator { stiffness, damping, basis: Basis::Modes(modes), ..of_record }
+    }
 }
 
 /// Returns the modes of a free decay under a clock, the most powerful first.

@@ -32,6 +32,8 @@ pub enum Basis {
     TurningPoints(usize),
     /// Regression over smooth windows: their number.
     Windows(usize),
+    /// The strongest of several modes: their number.
+    Modes(usize),
 }
 
 impl LinearOscillator {

@@ -281,6 +281,7 @@ impl<'a> HalfSwings<'a> {
     /// Returns `true` if samples are missing for a quarter of a half swing beside a turning point.
     fn has_gap(&self, number: usize) -> bool {
         let turn = |number: usize| self.turns.get(number).map(|turn| turn.at);
+        // The first two turning points are preceded by the start of the record.
         let from = number.checked_sub(2).and_then(turn).unwrap_or(0);
         let to = turn(number + 1).unwrap_or(usize::MAX);
         self.times.iter().zip(self.usual).any(|(times, usual)| {

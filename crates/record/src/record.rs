@@ -188,6 +188,7 @@ impl Record {
             let found = to - from;
             return Err(Fault::EmptyPart { from_s, to_s, found, needed: FEWEST_SAMPLES, first_s, last_s });
         }
+        // The columns are as long as the stamps.
         let cut = |column: &[f64]| column.get(from..to).unwrap_or_default().to_vec();
         let rows = self.rows.as_deref().and_then(|rows| rows.get(from..to)).map(<[usize]>::to_vec);
         let part = Self {

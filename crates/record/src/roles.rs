@@ -301,9 +301,13 @@ impl Roles<'_> {
             .map(|(at, _)| ((false, 0, 0, false), *at))
             .collect();
         match other.as_slice() {
-            // A voltage or a current beside a time alone is a sensor's.
+            // A voltage beside a time alone is a sensor's.
             [] => match left {
-                [(at, _)] => Ok((Pick { at: *at, because: ONLY }, None)),
+                [(at, column)]
+                    if column.heading.unit().is_some_and(|unit| unit.dimension() == Dimension::Voltage) =>
+                {
+                    Ok((Pick { at: *at, because: ONLY }, None))
+                }
                 _ => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
             },
             [(_, at)] => Ok((Pick { at: *at, because: ONLY }, None)),

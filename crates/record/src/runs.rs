@@ -119,6 +119,7 @@ fn label(heading: &Heading) -> String {
         .join(" ");
     let latest = heading.has("latest").then(|| "latest".to_owned());
     let digits = outside.split(|sign: char| !sign.is_ascii_digit()).rfind(|part| !part.is_empty());
+    // A title without either tells no run.
     latest.or(digits.map(str::to_owned)).unwrap_or_default()
 }
 

@@ -106,6 +106,7 @@ pub fn basis(oscillator: &LinearOscillator) -> String {
     match oscillator.basis {
         Basis::TurningPoints(count) => format!("from {count} turning points of a free decay"),
         Basis::Windows(count) => format!("by regression over {count} windows of the record"),
+        Basis::Modes(count) => format!("of the strongest of {count} modes"),
     }
 }
 

@@ -3,8 +3,8 @@
 //!
 //! Sources: RFC 8259 (JSON); jsonlines.org; for objects of columns, the documentation of pandas' `to_json`.
 
-use super::Unread;
 use super::sheet::{Cell, Column, named, unnamed};
+use super::unread::Unread;
 use crate::FEWEST_SAMPLES;
 use serde_json::{Map, Value};
 use std::collections::HashSet;

@@ -2,8 +2,8 @@
 //!
 //! Source: National Instruments, *Specification for the LabVIEW Measurement File (.lvm)*, version 2.0.
 
-use super::Unread;
 use super::sheet::{Cell, Sheet};
+use super::unread::Unread;
 use crate::dialect::is_missing;
 use jiff::civil::Date;
 

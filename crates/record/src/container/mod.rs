@@ -4,6 +4,7 @@
 //! The text has a header and one line per sample, as the reader of the `csv` format expects it; that reader
 //! chooses columns and units. Names of files play no role, because instruments and people rename them.
 
+mod bytes;
 mod json;
 mod literal;
 mod lvm;
@@ -14,22 +15,11 @@ mod serial;
 mod sheet;
 #[cfg(test)]
 mod tests;
+mod unread;
 mod wav;
 
 use crate::text::text_of;
-use thiserror::Error;
-
-/// A file of a known kind that cannot be read. The text continues `is`.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{kind}, but {problem}; {remedy}")]
-pub(crate) struct Unread {
-    /// Kind of the file, with its article.
-    pub(crate) kind: &'static str,
-    /// Reason for which it cannot be read, as a clause.
-    pub(crate) problem: String,
-    /// Instruction that makes it readable.
-    pub(crate) remedy: String,
-}
+pub(crate) use unread::Unread;
 
 /// Returns the text of a plain table with the content of a file, or `None` if the file is of none of the
 /// kinds that this module knows, in which case it may be a plain table itself.
@@ -61,15 +51,4 @@ fn phyphox(text: &str) -> Option<Result<String, Unread>> {
             remedy: "in the app, open the recording, choose Export Data and then CSV".to_owned(),
         })
     })
-}
-
-/// Returns the unsigned number in `size` bytes, lowest byte first, at an offset.
-fn number_at(bytes: &[u8], at: usize, size: usize) -> Option<u64> {
-    let bytes = bytes.get(at..at.checked_add(size)?)?;
-    Some(bytes.iter().rev().fold(0, |number, byte| (number << 8) | u64::from(*byte)))
-}
-
-/// Returns the number at an offset as a length or an offset.
-fn length_at(bytes: &[u8], at: usize, size: usize) -> Option<usize> {
-    number_at(bytes, at, size)?.try_into().ok()
 }

@@ -3,9 +3,10 @@
 //! Source: NumPy Enhancement Proposal 1, *A Simple File Format for NumPy Arrays*, and the documentation of
 //! `numpy.lib.format`; for type codes, that of NumPy's array interface.
 
+use super::bytes::{length_at, number_at};
 use super::literal::Literal;
 use super::sheet::{Cell, Column, named, unnamed};
-use super::{Unread, length_at, number_at};
+use super::unread::Unread;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 

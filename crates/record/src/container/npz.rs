@@ -2,9 +2,10 @@
 //!
 //! Sources: the documentation of `numpy.savez`; PKWARE, *APPNOTE.TXT – .ZIP File Format Specification*.
 
+use super::bytes::{length_at, number_at};
 use super::npy::Array;
 use super::sheet::{Cell, Column, named};
-use super::{Unread, length_at, number_at};
+use super::unread::Unread;
 use flate2::Crc;
 use flate2::read::DeflateDecoder;
 use std::borrow::Cow;

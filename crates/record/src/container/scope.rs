@@ -23,6 +23,7 @@ fn rigol(text: &str) -> Option<String> {
     let mut table = format!("time_s{}\n", titles.concat());
     for cells in lines {
         let Some(index) = number(&cells, 0) else { continue };
+        // A line of an index alone has no values.
         let values = cells.get(1..channels.min(cells.len())).unwrap_or_default();
         table.push_str(&format!("{},{}\n", start + index * increment, values.join(",")));
     }

@@ -3,8 +3,9 @@
 //! Source: Microsoft and IBM, *Multimedia Programming Interface and Data Specifications 1.0*, with
 //! Microsoft's `WAVEFORMATEXTENSIBLE`; EBU Tech 3306 for RF64.
 
+use super::bytes::{length_at, number_at};
 use super::sheet::{Cell, Sheet};
-use super::{Unread, length_at, number_at};
+use super::unread::Unread;
 
 const PCM: u64 = 1;
 const FLOAT: u64 = 3;

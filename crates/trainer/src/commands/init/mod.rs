@@ -9,7 +9,7 @@ use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
 use envelope::RecommendedPipeline;
-use identify::{Estimated, LinearOscillator, identify};
+use identify::{Estimated, LinearOscillator, Mode, identify, modes};
 use record::{Fault, Look, ReadOptions, look};
 use report::format::{significant, with_uncertainty};
 use runs::{RunError, RunFolder};
@@ -50,6 +50,8 @@ struct Looked {
     path: PathBuf,
     look: Look,
     oscillator: LinearOscillator,
+    /// Modes of a free decay; the oscillator is the strongest if there are several.
+    modes: Vec<Mode>,
 }
 
 /// Findings in the logs, with the files and commands that follow from them.
@@ -103,7 +105,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     // A folder without logs was refused above.
     let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
     let surest = looked.into_iter().next().ok_or_else(none)?;
-    let Looked { path, look, oscillator } = &surest;
+    let Looked { path, look, oscillator, .. } = &surest;
     let coordinate = coordinate_of(look.source.reading.coordinate);
     let name = path.display().to_string();
     let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
@@ -121,7 +123,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         ));
     }
     // Only a free decay has an envelope from which a damping ratio can be estimated.
-    if oscillator.input_gain.is_none() && has_envelope(look) {
+    if oscillator.input_gain.is_none() && surest.modes.len() < 2 && has_envelope(look) {
         let path = path_from(&folder, path).display().to_string();
         files.push(("estimate.toml", files::configuration(&path, &look.source.reading.options())));
         next.push((
@@ -189,7 +191,12 @@ fn looked_as(path: &Path, reading: &Reading, driven: bool) -> Result<Looked, Tra
     }
     let oscillator =
         identify(&look.record, &look.clock).map_err(|source| WorkflowError::Identify { file, source })?;
-    Ok(Looked { path: path.to_owned(), look, oscillator })
+    let modes = modes(&look.record, &look.clock);
+    let oscillator = match modes.as_slice() {
+        [strongest, _, ..] => strongest.oscillator(oscillator, modes.len()),
+        _ => oscillator,
+    };
+    Ok(Looked { path: path.to_owned(), look, oscillator, modes })
 }
 
 impl Looked {
@@ -254,6 +261,7 @@ impl Found {
                 "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
                 "basis": files::basis(&self.surest.oscillator),
             },
+            "modes": self.modes_json(),
             "logs": self.each.iter().map(|log| json!({
                 "path": log.path, "samples": log.samples,
                 "natural_frequency_hz": number(log.natural_frequency_hz), "damping_ratio": number(log.damping_ratio),
@@ -283,6 +291,7 @@ impl Found {
                 .push(row("natural frequency", "none: nothing pulls it back to a rest position".to_owned())),
         }
         rows.push(row("", files::basis(&self.surest.oscillator)));
+        rows.extend(self.mode_rows());
         rows.extend(self.findings().into_iter().map(|finding| row("note", finding)));
         let written = self.files.iter().map(|(name, _)| path_word(&self.folder.join(name)));
         let next: Vec<String> =
@@ -336,6 +345,7 @@ impl Found {
             .chain(apart(&self.each))
             .chain(self.few_cycles())
             .chain(self.no_swing())
+            .chain(self.several_modes())
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -362,6 +372,49 @@ impl Found {
                 100.0 * part
             )
         })
+    }
+
+    /// Returns a remark on the modes of a record that has several.
+    fn several_modes(&self) -> Option<String> {
+        let modes = &self.surest.modes;
+        (modes.len() > 1).then(|| {
+            format!(
+                "the record holds {} modes; the numbers above are those of the strongest. The decay of its peaks mixes them, so \
+                 that no estimate is suggested",
+                modes.len()
+            )
+        })
+    }
+
+    /// Returns the modes with their intervals of 95 %, empty for a record of one mode.
+    fn modes_json(&self) -> Vec<Value> {
+        let number = |found: Estimated| {
+            let half = 1.96 * found.std_error;
+            json!({
+                "value": found.value, "std_error": found.std_error,
+                "interval_95": [found.value - half, found.value + half],
+            })
+        };
+        let several = Some(&self.surest.modes).filter(|modes| modes.len() > 1);
+        let mode = |mode: &Mode| {
+            json!({
+                "frequency_hz": number(mode.frequency_hz), "damping_ratio": number(mode.damping_ratio),
+                "share": mode.share,
+            })
+        };
+        several.into_iter().flatten().map(mode).collect()
+    }
+
+    /// Returns a row of the table for each of several modes.
+    fn mode_rows(&self) -> Vec<Vec<String>> {
+        let several = Some(&self.surest.modes).filter(|modes| modes.len() > 1);
+        let row = |(at, mode): (usize, &Mode)| {
+            let [frequency, ratio] = [mode.frequency_hz, mode.damping_ratio].map(uncertain);
+            let share = 100.0 * mode.share;
+            let numbers = format!("{frequency}, Hz; damping ratio {ratio}; {share:.0} % of the power");
+            vec![format!("mode {}", at + 1), numbers]
+        };
+        several.into_iter().flatten().enumerate().map(row).collect()
     }
 
     /// Returns a remark if the record has no natural frequency.
