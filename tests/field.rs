@@ -3,6 +3,7 @@
 
 use crate::support::{number, root, trainer};
 use serde_json::Value;
+use std::io::Write;
 use std::path::PathBuf;
 
 /// Log with the options a user gives, and the frequency in hertz and damping ratio that it has, each with the
@@ -50,7 +51,8 @@ const LOGS: &[Log] = &[
 fn field(name: &str) -> Option<PathBuf> {
     let path = root().join("../shared/field").join(name);
     if !path.exists() {
-        eprintln!("SKIPPED: {} is absent, so that nothing was checked on it", path.display());
+        let line = format!("SKIPPED: the log {} is not there\n", path.display());
+        std::io::stderr().write_all(line.as_bytes()).unwrap();
         return None;
     }
     Some(path)
@@ -105,4 +107,19 @@ fn without_a_swing_no_command_is_printed_that_fails() {
         assert!(!next.iter().any(|line| line.contains("estimate.toml")), "{name}: {next:?}");
         assert!(!found["record"]["findings"].as_array().unwrap().is_empty(), "{name}");
     }
+}
+
+/// Regression: one frequency between two modes was printed, which neither of them has.
+#[test]
+fn two_modes_are_both_shown() {
+    let Some(path) = field("coupled-pendulums/pendulum.csv") else { return };
+    let found = look(&path, &[]).unwrap();
+    let modes = found["modes"].as_array().unwrap();
+    assert_eq!(modes.len(), 2, "{modes:?}");
+    let of = |at: usize, key: &str| number(&found, &format!("/modes/{at}/{key}/value"));
+    assert!((of(0, "frequency_hz") - 0.509).abs() < 1e-3 && (of(0, "damping_ratio") - 0.0015).abs() < 3e-4);
+    assert!((of(1, "frequency_hz") - 0.538).abs() < 1.5e-3 && of(1, "damping_ratio").abs() < 8e-4);
+    assert_eq!(number(&found, "/oscillator/natural_frequency_hz/value"), of(0, "frequency_hz"));
+    let one = look(&field("tracker-xy/tracker.txt").unwrap(), &[]).unwrap();
+    assert!(one["modes"].as_array().unwrap().is_empty());
 }

@@ -104,10 +104,7 @@ mod tests {
     use crate::unit::Unit;
 
     fn swing(offset: f64, amplitude: f64) -> Vec<f64> {
-        (0..600)
-            .map(|at| f64::from(at))
-            .map(|t| offset + amplitude * (-0.004 * t).exp() * (0.11 * t).cos())
-            .collect()
+        (0..600).map(f64::from).map(|t| offset + amplitude * (-0.004 * t).exp() * (0.11 * t).cos()).collect()
     }
 
     fn off(found: &[f64], true_: &[f64]) -> f64 {

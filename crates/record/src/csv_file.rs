@@ -15,7 +15,7 @@ use crate::roles::{Column, Kind, Pick, Roles, assumed_unit, quantity};
 use crate::runs::one_after_another;
 use crate::statement::Statements;
 use crate::swing::Swing;
-use crate::table::Table;
+use crate::table::{OfRun, Table};
 use crate::times::{Stamp, Times, Told, seconds};
 use crate::unit::{TimeUnit, Unit};
 use crate::words::counted;
@@ -72,7 +72,8 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let mut statements = Statements::default();
     dialect::statements(text).for_each(|comment| statements.read_comment(comment));
     let table = Table::new(text)?;
-    let (run, columns, mut findings) = table.run(asked)?;
+    let OfRun { run, columns, finding } = table.run(asked)?;
+    let mut findings: Vec<String> = finding.into_iter().collect();
     let roles = Roles { line: table.layout.line, columns: &columns, options };
     let filter = match &asked.filter {
         Some(filter) => Some((roles.named(&filter.column, "data.where")?, filter)),

@@ -17,6 +17,16 @@ const MOST_SERIES: usize = 40;
 const SERIES: &[&str] =
     &["joint", "axis", "motor", "channel", "sensor", "body", "link", "servo", "name", "id"];
 
+/// Columns of the run that is read.
+pub(crate) struct OfRun {
+    /// Number of the run, from 1; `None` if the table holds only one.
+    pub(crate) run: Option<usize>,
+    /// All columns, those of other runs without a title and a content.
+    pub(crate) columns: Vec<Column>,
+    /// Sentence about the other runs, if the first was taken for want of a choice.
+    pub(crate) finding: Option<String>,
+}
+
 /// Table of a text, with the headings and kinds of its columns.
 pub(crate) struct Table<'a> {
     pub(crate) layout: Layout<'a>,
@@ -108,15 +118,14 @@ impl<'a> Table<'a> {
     }
 
     /// Chooses the run to read, if the table holds several side by side: that of the options, else that of
-    /// the columns that the options name, else the first. Returns its number from 1, the columns with only
-    /// those of the run, and a sentence about the others.
+    /// the columns that the options name, else the first.
     ///
     /// # Errors
     /// [`Fault::NoSuchRun`].
-    pub(crate) fn run(&self, asked: &CsvColumns) -> Result<(Option<usize>, Vec<Column>, Vec<String>), Fault> {
+    pub(crate) fn run(&self, asked: &CsvColumns) -> Result<OfRun, Fault> {
         let runs = runs(&self.columns);
         if runs.is_empty() {
-            return Ok((None, self.columns.clone(), Vec::new()));
+            return Ok(OfRun { run: None, columns: self.columns.clone(), finding: None });
         }
         let named = |run: &Run| {
             let names = [&asked.time, &asked.value].into_iter().flatten();
@@ -136,7 +145,7 @@ impl<'a> Table<'a> {
                 labels.join(", ")
             )
         });
-        Ok((Some(taken), self.only(run), finding.into_iter().collect()))
+        Ok(OfRun { run: Some(taken), columns: self.only(run), finding })
     }
 
     /// Returns `true`, with a sentence, if the input is written on fewer than two of three lines that hold a

@@ -1,5 +1,7 @@
 //! `trainer init`: a first look at a log, and files to start from.
 
+mod modes;
+
 use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
 use crate::options::Output;
@@ -9,9 +11,10 @@ use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
 use envelope::RecommendedPipeline;
-use identify::{Estimated, LinearOscillator, Mode, identify, modes};
+use identify::{Estimated, LinearOscillator, Mode, identify};
+use modes::uncertain;
 use record::{Fault, Look, ReadOptions, look};
-use report::format::{significant, with_uncertainty};
+use report::format::significant;
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
@@ -191,7 +194,7 @@ fn looked_as(path: &Path, reading: &Reading, driven: bool) -> Result<Looked, Tra
     }
     let oscillator =
         identify(&look.record, &look.clock).map_err(|source| WorkflowError::Identify { file, source })?;
-    let modes = modes(&look.record, &look.clock);
+    let modes = identify::modes(&look.record, &look.clock);
     let oscillator = match modes.as_slice() {
         [strongest, _, ..] => strongest.oscillator(oscillator, modes.len()),
         _ => oscillator,
@@ -261,7 +264,7 @@ impl Found {
                 "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
                 "basis": files::basis(&self.surest.oscillator),
             },
-            "modes": self.modes_json(),
+            "modes": modes::json_of(&self.surest.modes),
             "logs": self.each.iter().map(|log| json!({
                 "path": log.path, "samples": log.samples,
                 "natural_frequency_hz": number(log.natural_frequency_hz), "damping_ratio": number(log.damping_ratio),
@@ -291,7 +294,7 @@ impl Found {
                 .push(row("natural frequency", "none: nothing pulls it back to a rest position".to_owned())),
         }
         rows.push(row("", files::basis(&self.surest.oscillator)));
-        rows.extend(self.mode_rows());
+        rows.extend(modes::rows(&self.surest.modes));
         rows.extend(self.findings().into_iter().map(|finding| row("note", finding)));
         let written = self.files.iter().map(|(name, _)| path_word(&self.folder.join(name)));
         let next: Vec<String> =
@@ -345,7 +348,7 @@ impl Found {
             .chain(apart(&self.each))
             .chain(self.few_cycles())
             .chain(self.no_swing())
-            .chain(self.several_modes())
+            .chain(modes::remark(&self.surest.modes))
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -372,49 +375,6 @@ impl Found {
                 100.0 * part
             )
         })
-    }
-
-    /// Returns a remark on the modes of a record that has several.
-    fn several_modes(&self) -> Option<String> {
-        let modes = &self.surest.modes;
-        (modes.len() > 1).then(|| {
-            format!(
-                "the record holds {} modes; the numbers above are those of the strongest. The decay of its peaks mixes them, so \
-                 that no estimate is suggested",
-                modes.len()
-            )
-        })
-    }
-
-    /// Returns the modes with their intervals of 95 %, empty for a record of one mode.
-    fn modes_json(&self) -> Vec<Value> {
-        let number = |found: Estimated| {
-            let half = 1.96 * found.std_error;
-            json!({
-                "value": found.value, "std_error": found.std_error,
-                "interval_95": [found.value - half, found.value + half],
-            })
-        };
-        let several = Some(&self.surest.modes).filter(|modes| modes.len() > 1);
-        let mode = |mode: &Mode| {
-            json!({
-                "frequency_hz": number(mode.frequency_hz), "damping_ratio": number(mode.damping_ratio),
-                "share": mode.share,
-            })
-        };
-        several.into_iter().flatten().map(mode).collect()
-    }
-
-    /// Returns a row of the table for each of several modes.
-    fn mode_rows(&self) -> Vec<Vec<String>> {
-        let several = Some(&self.surest.modes).filter(|modes| modes.len() > 1);
-        let row = |(at, mode): (usize, &Mode)| {
-            let [frequency, ratio] = [mode.frequency_hz, mode.damping_ratio].map(uncertain);
-            let share = 100.0 * mode.share;
-            let numbers = format!("{frequency}, Hz; damping ratio {ratio}; {share:.0} % of the power");
-            vec![format!("mode {}", at + 1), numbers]
-        };
-        several.into_iter().flatten().enumerate().map(row).collect()
     }
 
     /// Returns a remark if the record has no natural frequency.
@@ -452,10 +412,6 @@ const FEW_CYCLES: f64 = 3.0;
 fn is_built_here() -> bool {
     let program = own_program().unwrap_or_default();
     program.ancestors().skip(1).take(2).any(|folder| folder.ends_with("target"))
-}
-
-fn uncertain(estimated: Estimated) -> String {
-    format!("{} (standard error)", with_uncertainty(estimated.value, estimated.std_error))
 }
 
 /// Formats the given reading options as options of the diagnosis.
