@@ -29,6 +29,9 @@ const HELD: f64 = 1.25;
 const MOST: f64 = 0.6;
 /// Part of the half swings of a free swing that may be larger than the ones before them.
 const RISES: f64 = 0.1;
+/// Part of the motion beside the free swings in which half swings are as long as usual, from which it is the
+/// same swing, with wrong values or another mode in it, and no hand.
+const SWINGS_OUTSIDE: f64 = 0.4;
 /// Factor between the falls of the last half swings and the median fall before them from which a hand slows
 /// the swing: no friction takes more from a small swing than from a large one.
 const SLOWED: f64 = 4.0;
@@ -71,7 +74,8 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let moves = between([first.at, last.at]);
     let is_most = found.iter().map(|swing| between(swing.samples)).sum::<f64>() > MOST * moves;
     let is_whole = found.iter().any(|swing| swing.samples == [0, values.len() - 1]);
-    if is_most && !is_whole { found } else { Vec::new() }
+    let is_swing = half_swings.regular_outside(&found) > SWINGS_OUTSIDE;
+    if is_most && !is_whole && !is_swing { found } else { Vec::new() }
 }
 
 /// Returns the standard deviation of white noise, from the median size of the fourth differences, in which a
@@ -230,6 +234,25 @@ impl<'a> HalfSwings<'a> {
         let start = if from == 0 && !self.is_held(0) { 0 } else { self.turns.get(from)?.plateau[1] };
         let end = if is_last && slowed.is_none() { samples - 1 } else { self.turns.get(from + count)?.at };
         (end > start).then_some(FreeSwing { samples: [start, end], half_swings: count })
+    }
+
+    /// Returns the part of the motion outside some free swings, by its time, that large half swings of usual
+    /// duration take.
+    fn regular_outside(&self, found: &[FreeSwing]) -> f64 {
+        let [durations, _] = &self.durations;
+        let [usual, _] = self.usual;
+        let ends = self.turns.iter().zip(self.turns.iter().skip(1)).map(|(one, next)| [one.at, next.at]);
+        let outside = |[from, to]: [usize; 2]| {
+            !found.iter().any(|swing| swing.samples[0] <= from.max(1) && to <= swing.samples[1])
+        };
+        let half_swings = ends.zip(durations).zip(&self.heights).filter(|((ends, _), _)| outside(*ends));
+        let (mut all, mut regular) = (0.0, 0.0);
+        for ((_, duration), height) in half_swings {
+            let is_usual = (duration - usual).abs() < 0.3 * usual && *height > 0.5 * self.large;
+            all += duration;
+            regular += if is_usual { *duration } else { 0.0 };
+        }
+        if all > 0.0 { regular / all } else { 0.0 }
     }
 
     /// Returns the number of half swings before a hand slows the swing: all later ones that are large fall far

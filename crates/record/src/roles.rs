@@ -271,11 +271,16 @@ impl Roles<'_> {
             left.iter().filter_map(|(at, column)| Some((self.score(&column.heading)?, *at))).collect();
         found.sort_unstable();
         match found.as_slice() {
-            [(_, at)] => Ok((Pick { at: *at, because: BY_NAME }, None)),
+            [(_, at)] => match self.swings_without_name(&left, &found, swing).filter(|_| left.len() > 1) {
+                Some(taken) => Ok(taken),
+                None => Ok((Pick { at: *at, because: BY_NAME }, None)),
+            },
             [(best, by_name), (next, _), ..] => match self.by_swing(&found, swing) {
                 Some(at) if at != *by_name => {
                     Ok((Pick { at, because: BY_SWING }, self.by_swing_said(at, &found)))
                 }
+                // A column that swings comes before one with a better name that does not.
+                None if let Some(taken) = self.swings_without_name(&left, &found, swing) => Ok(taken),
                 // Of two columns of the same name and rank only the swing can decide.
                 None if best == next => {
                     let tied = |column: &Column| self.score(&column.heading).as_ref() == Some(best);
@@ -287,6 +292,24 @@ impl Roles<'_> {
             [] if let Some(at) = self.text_with_such_a_name() => Ok((Pick { at, because: BY_NAME }, None)),
             [] => self.unnamed(&left, swing),
         }
+    }
+
+    /// Returns the only column without a known name that swings, if none of those with one does.
+    fn swings_without_name(
+        &self,
+        left: &[(usize, &Column)],
+        named: &[(Score, usize)],
+        swing: &dyn Fn(usize) -> Swing,
+    ) -> Option<(Pick, Option<String>)> {
+        let is_named = |at: usize| named.iter().any(|(_, other)| *other == at);
+        if named.iter().any(|(_, at)| swing(*at).is_regular) {
+            return None;
+        }
+        let others = left.iter().filter(|(at, column)| !is_named(*at) && !drives(&column.heading));
+        let mut swinging = others.filter(|(at, _)| swing(*at).is_regular);
+        let (at, _) = swinging.next()?;
+        let only = swinging.next().is_none();
+        only.then(|| (Pick { at: *at, because: BY_SWING }, self.by_swing_said(*at, named)))
     }
 
     /// Returns the observed column among columns without a known name, as [`Roles::value`] does.
