@@ -246,13 +246,15 @@ impl<'a> HalfSwings<'a> {
             !found.iter().any(|swing| swing.samples[0] <= from.max(1) && to <= swing.samples[1])
         };
         let half_swings = ends.zip(durations).zip(&self.heights).filter(|((ends, _), _)| outside(*ends));
-        let (mut all, mut regular) = (0.0, 0.0);
+        let (mut all, mut regular, mut count) = (0.0, 0.0, 0);
         for ((_, duration), height) in half_swings {
             let is_usual = (duration - usual).abs() < 0.3 * usual && *height > 0.5 * self.large;
             all += duration;
             regular += if is_usual { *duration } else { 0.0 };
+            count += usize::from(is_usual);
         }
-        if all > 0.0 { regular / all } else { 0.0 }
+        // A hand may take about as long as a half swing, but hardly four times.
+        if count > 3 { regular / all } else { 0.0 }
     }
 
     /// Returns the number of half swings before a hand slows the swing: all later ones that are large fall far
