@@ -20,8 +20,6 @@ const STRUCK: f64 = 1.15;
 /// Height of a half swing, as a part of the one before, below which it was stopped, unless the ones before
 /// fell as fast.
 const STOPPED: f64 = 0.6;
-/// Ratio of the durations of neighboring half swings above which they do not belong to one free swing.
-const UNEVEN: f64 = 1.6;
 /// Duration of a plateau, in half swings, from which something was held.
 const HELD: f64 = 1.25;
 
@@ -48,7 +46,7 @@ struct Turn {
 }
 
 /// Finds the free swings of a record, if there is something beside them: a change of energy within one half
-/// swing (a lift, a strike, a stop), a plateau longer than a half swing, or half swings of uneven duration.
+/// swing (a lift, a strike, a stop), or a plateau longer than a half swing.
 /// Empty for a record with an input, without such a change, or whose free swings are not most of it.
 ///
 /// A free swing is one whose half swings fall; beating and forced ones rise again, are not recognized here
@@ -207,12 +205,7 @@ impl<'a> HalfSwings<'a> {
             && before > self.large
             && (number + 2 < self.turns.len() || self.goes_on());
         let stopped = number > 1 && seen && after < STOPPED * expected;
-        let uneven = before.min(after) > self.large
-            && self.both(|durations, _| {
-                let pair = number.checked_sub(1).and_then(|at| durations.get(at)).zip(durations.get(number));
-                pair.is_some_and(|(one, next)| one.max(*next) > UNEVEN * one.min(*next))
-            });
-        struck || stopped || uneven || self.is_held(number)
+        struck || stopped || self.is_held(number)
     }
 
     /// Returns the free swing between two turning points, by their numbers, the second of which ends it; `None`
@@ -273,12 +266,6 @@ impl<'a> HalfSwings<'a> {
                 beside > self.large && after.iter().all(|fall| *fall > least)
             })
             .map(|number| number + 1)
-    }
-
-    /// Returns `true` if a condition holds for the durations by the stamps and for those by the rows: clocks
-    /// of hosts stand still and jump though the samples are even, and rows may be missing.
-    fn both(&self, holds: impl Fn(&[f64], f64) -> bool) -> bool {
-        self.durations.iter().zip(self.usual).all(|(durations, usual)| holds(durations, usual))
     }
 
     /// Returns `true` if the first turning point is the beginning of the record, and not at rest or held there.
