@@ -375,7 +375,7 @@ fn a_driven_system_needs_its_input() {
 #[test]
 fn files_that_cannot_be_used_are_refused_with_their_place() {
     refused("time_s,angle_rad\n0,0.5\n0.01,x\n", NOMINAL, &[], "record.csv:3: `x` in column `angle_rad`");
-    refused("t,foo,bar\n0,0.5,1\n", NOMINAL, &[], "Set --value to the column's name");
+    refused("t,foo,bar\n0,0.5,1\n", NOMINAL, &[], "set --value to the name of one");
     refused("", NOMINAL, &[], "record.csv: is empty");
     refused(&decay(800, 0.7), &format!("{NOMINAL}mass = 2\n"), &[], "nominal.toml:5:1: unknown key `mass`");
     refused(&decay(800, 0.7), "inertia = 1.0\n", &[], "`damping` is missing");

@@ -20,6 +20,10 @@ const STRUCK: f64 = 1.15;
 /// Height of a half swing, as a part of the one before, below which it was stopped, unless the ones before
 /// fell as fast.
 const STOPPED: f64 = 0.6;
+/// Ratio of the durations of neighboring half swings above which they do not belong to one free swing.
+const UNEVEN: f64 = 1.6;
+/// Difference of their heights, as a part of the larger one, that they have to have as well.
+const UNLIKE: f64 = 0.1;
 /// Duration of a plateau, in half swings, from which something was held.
 const HELD: f64 = 1.25;
 
@@ -46,7 +50,7 @@ struct Turn {
 }
 
 /// Finds the free swings of a record, if there is something beside them: a change of energy within one half
-/// swing (a lift, a strike, a stop), or a plateau longer than a half swing.
+/// swing (a lift, a strike, a stop), a plateau longer than a half swing, or half swings of uneven duration.
 /// Empty for a record with an input, without such a change, or whose free swings are not most of it.
 ///
 /// A free swing is one whose half swings fall; beating and forced ones rise again, are not recognized here
@@ -72,7 +76,7 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let moves = between([first.at, last.at]);
     let is_most = found.iter().map(|swing| between(swing.samples)).sum::<f64>() > MOST * moves;
     let is_whole = found.iter().any(|swing| swing.samples == [0, values.len() - 1]);
-    let is_swing = half_swings.regular_outside(&found) > SWINGS_OUTSIDE;
+    let is_swing = half_swings.regular_outside(&found) > SWINGS_OUTSIDE || half_swings.goes_on_after(&found);
     if is_most && !is_whole && !is_swing { found } else { Vec::new() }
 }
 
@@ -205,7 +209,15 @@ impl<'a> HalfSwings<'a> {
             && before > self.large
             && (number + 2 < self.turns.len() || self.goes_on());
         let stopped = number > 1 && seen && after < STOPPED * expected;
-        struck || stopped || self.is_held(number)
+        // Where lines were dropped a half swing is short, but as high as its neighbors.
+        let unlike = (after - before).abs() > UNLIKE * before.max(after);
+        let uneven = unlike
+            && before.min(after) > self.large
+            && self.both(|durations, _| {
+                let pair = number.checked_sub(1).and_then(|at| durations.get(at)).zip(durations.get(number));
+                pair.is_some_and(|(one, next)| one.max(*next) > UNEVEN * one.min(*next))
+            });
+        struck || stopped || uneven || self.is_held(number)
     }
 
     /// Returns the free swing between two turning points, by their numbers, the second of which ends it; `None`
@@ -227,6 +239,14 @@ impl<'a> HalfSwings<'a> {
         let start = if from == 0 && !self.is_held(0) { 0 } else { self.turns.get(from)?.plateau[1] };
         let end = if is_last && slowed.is_none() { samples - 1 } else { self.turns.get(from + count)?.at };
         (end > start).then_some(FreeSwing { samples: [start, end], half_swings: count })
+    }
+
+    /// Returns `true` if many large half swings follow the last of some free swings: what a hand has stopped
+    /// moves again only if it is struck, and then swings freely.
+    fn goes_on_after(&self, found: &[FreeSwing]) -> bool {
+        let end = found.iter().map(|swing| swing.samples[1]).max();
+        let after = self.turns.iter().zip(&self.heights).filter(|(turn, _)| Some(turn.at) >= end);
+        after.filter(|(_, height)| **height > self.large).count() > FEWEST
     }
 
     /// Returns the part of the motion outside some free swings, by its time, that large half swings of usual
@@ -266,6 +286,12 @@ impl<'a> HalfSwings<'a> {
                 beside > self.large && after.iter().all(|fall| *fall > least)
             })
             .map(|number| number + 1)
+    }
+
+    /// Returns `true` if a condition holds for the durations by the stamps and for those by the rows: clocks
+    /// of hosts stand still and jump though the samples are even, and rows may be missing.
+    fn both(&self, holds: impl Fn(&[f64], f64) -> bool) -> bool {
+        self.durations.iter().zip(self.usual).all(|(durations, usual)| holds(durations, usual))
     }
 
     /// Returns `true` if the first turning point is the beginning of the record, and not at rest or held there.
