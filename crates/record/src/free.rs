@@ -34,6 +34,8 @@ const RISES: f64 = 0.1;
 /// Part of the motion beside the free swings in which half swings are as long as usual, from which it is the
 /// same swing, with wrong values or another mode in it, and no hand.
 const SWINGS_OUTSIDE: f64 = 0.4;
+/// Number of breaks up to which a hand may also have swung it in its own time.
+const MANY: usize = 6;
 /// Factor between the falls of the last half swings and the median fall before them from which a hand slows
 /// the swing: no friction takes more from a small swing than from a large one.
 const SLOWED: f64 = 4.0;
@@ -76,7 +78,8 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let moves = between([first.at, last.at]);
     let is_most = found.iter().map(|swing| between(swing.samples)).sum::<f64>() > MOST * moves;
     let is_whole = found.iter().any(|swing| swing.samples == [0, values.len() - 1]);
-    let is_swing = half_swings.regular_outside(&found) > SWINGS_OUTSIDE || half_swings.goes_on_after(&found);
+    let is_swing = breaks.len() > MANY && half_swings.regular_outside(&found) > SWINGS_OUTSIDE
+        || half_swings.goes_on_after(&found);
     if is_most && !is_whole && !is_swing { found } else { Vec::new() }
 }
 
@@ -246,7 +249,7 @@ impl<'a> HalfSwings<'a> {
     fn goes_on_after(&self, found: &[FreeSwing]) -> bool {
         let end = found.iter().map(|swing| swing.samples[1]).max();
         let after = self.turns.iter().zip(&self.heights).filter(|(turn, _)| Some(turn.at) >= end);
-        after.filter(|(_, height)| **height > self.large).count() > FEWEST
+        after.filter(|(_, height)| **height > self.large).count() > 3
     }
 
     /// Returns the part of the motion outside some free swings, by its time, that large half swings of usual
