@@ -7,6 +7,7 @@
 mod fit;
 mod pair;
 mod pencil;
+mod samples;
 mod spectrum;
 
 use crate::observed::input;
@@ -14,11 +15,10 @@ use crate::oscillator::{Basis, Estimated, LinearOscillator};
 use fit::{Fit, Fitted, Line};
 use pencil::Blocks;
 use record::{Clock, Record};
+use samples::Samples;
 use spectrum::Spectrum;
 use std::f64::consts::TAU;
 
-/// Fewest samples with modes.
-const FEWEST_SAMPLES: usize = 32;
 /// Most lines, with the harmonics of modes.
 const MOST_LINES: usize = 6;
 /// Most lines that are tried in vain.
@@ -27,8 +27,6 @@ const MOST_REFUSED: usize = 4;
 const FEWEST_PERIODS: f64 = 3.0;
 /// Highest frequency, in samples per period.
 const FEWEST_PER_PERIOD: f64 = 2.5;
-/// Samples per period that are enough for a search.
-const ENOUGH_PER_PERIOD: f64 = 10.0;
 /// Most samples that first guesses are compared on.
 const MOST_PICKED: usize = 8192;
 /// Smallest amplitude, in standard errors.
@@ -89,57 +87,7 @@ pub fn modes(record: &Record, clock: &Clock) -> Vec<Mode> {
     Samples::new(record, clock).and_then(|samples| samples.modes()).unwrap_or_default()
 }
 
-/// Times from 0 to 1 and values minus their mean over their standard deviation.
-struct Samples {
-    times: Vec<f64>,
-    values: Vec<f64>,
-    duration_s: f64,
-    /// Standard deviation of the values, in the record's unit.
-    size: f64,
-}
-
 impl Samples {
-    fn new(record: &Record, clock: &Clock) -> Option<Self> {
-        let (first, last) = (*clock.times_s.first()?, *clock.times_s.last()?);
-        let (values, count) = (record.values(), record.len() as f64);
-        let duration_s = last - first;
-        let mean = values.iter().sum::<f64>() / count;
-        let size = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
-        let usable = values.len() >= FEWEST_SAMPLES && duration_s > 0.0 && size.is_finite();
-        // Rounding leaves a deviation to values that are all the same.
-        (usable && size > 1e-12 * mean.abs() && size > 0.0).then(|| Self {
-            times: clock.times_s.iter().map(|time| (time - first) / duration_s).collect(),
-            values: values.iter().map(|value| (value - mean) / size).collect(),
-            duration_s,
-            size,
-        })
-    }
-
-    /// Returns the means of as many neighbors as a highest angular frequency allows; no mean spans a gap.
-    fn thinned(&self, omega: f64) -> Self {
-        let step = 1.0 / self.times.len() as f64;
-        let together = (TAU / omega / step / ENOUGH_PER_PERIOD).floor().clamp(1.0, 1e6);
-        let (mut times, mut values) = (Vec::new(), Vec::new());
-        let (mut start, mut sums, mut count) = (f64::NEG_INFINITY, (0.0, 0.0), 0.0);
-        for (&time, &value) in self.times.iter().zip(&self.values) {
-            if count >= together || (count > 0.0 && time - start > 1.5 * together * step) {
-                times.push(sums.0 / count);
-                values.push(sums.1 / count);
-                (sums, count) = ((0.0, 0.0), 0.0);
-            }
-            if count == 0.0 {
-                start = time;
-            }
-            sums = (sums.0 + time, sums.1 + value);
-            count += 1.0;
-        }
-        if count >= 0.5 * together {
-            times.push(sums.0 / count);
-            values.push(sums.1 / count);
-        }
-        Self { times, values, duration_s: self.duration_s, size: self.size }
-    }
-
     /// Returns every so many samples, few enough to compare first guesses quickly.
     fn picked(&self) -> Self {
         let stride = self.times.len().div_ceil(MOST_PICKED).max(1);

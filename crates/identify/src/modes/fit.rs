@@ -4,7 +4,7 @@
 //! Variable projection (Golub, Pereyra 1973, in the form of Kaufman 1975): each step solves for the linear
 //! coefficients first and then for the frequencies and decays together with them.
 
-use super::Samples;
+use super::samples::Samples;
 use nalgebra::{DMatrix, DVector};
 
 /// Number of columns of the trend.

@@ -1,8 +1,8 @@
 //! Decision between two modes and one mode whose frequency or decay depends on its amplitude.
 
-use super::Samples;
 use super::fit::{Fit, Line};
 use super::pencil::Blocks;
+use super::samples::Samples;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 

@@ -5,8 +5,8 @@
 //! has the rank of the number of lines; the shift of its signal space by one row has the lines' poles as
 //! eigenvalues (Kung 1978; Hua, Sarkar 1990, equation 14).
 
-use super::Samples;
 use super::fit::Line;
+use super::samples::Samples;
 use nalgebra::{Complex, DMatrix, Matrix2, SVD};
 use std::f64::consts::TAU;
 

@@ -1,6 +1,6 @@
 //! Spectrum of residuals: its strongest line and the noise beside a line.
 
-use super::Samples;
+use super::samples::Samples;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
