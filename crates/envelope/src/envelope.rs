@@ -157,18 +157,6 @@ pub struct Extraction {
     pub samples: usize,
 }
 
-/// Returns the median, which is the mean of the middle two for an even number of entries. `None` for no
-/// entries.
-pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    let upper = *values.get(middle)?;
-    if values.len() % 2 == 1 {
-        return Some(upper);
-    }
-    Some((values.get(middle.checked_sub(1)?)? + upper) / 2.0)
-}
-
 /// Returns the differences between entries `lag` apart.
 pub(crate) fn differences(values: &[f64], lag: usize) -> Vec<f64> {
     values.iter().zip(values.iter().skip(lag)).map(|(one, next)| next - one).collect()

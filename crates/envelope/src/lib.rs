@@ -12,7 +12,6 @@ mod error;
 #[cfg(test)]
 mod gap_tests;
 mod interpolation;
-mod noise;
 mod paper;
 mod peaks;
 mod recommended;
@@ -22,8 +21,8 @@ mod stretches;
 pub use envelope::{Envelope, Extraction, RatioDefinition};
 pub use error::EnvelopeError;
 pub use interpolation::resample;
-pub use noise::noise_level;
 pub use paper::PaperPipeline;
 pub use peaks::{find_peaks, local_maxima, prominences};
 pub use recommended::RecommendedPipeline;
+pub use record::noise_level;
 pub use savitzky_golay::savitzky_golay;

@@ -1,12 +1,12 @@
 //! Envelope pipeline of the paper.
 
-use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, differences, median};
+use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, differences};
 use crate::error::EnvelopeError;
 use crate::interpolation::resample;
 use crate::peaks::find_peaks;
 use crate::savitzky_golay::savitzky_golay;
 use crate::stretches::stretches;
-use record::{Clock, Record};
+use record::{Clock, Record, median};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

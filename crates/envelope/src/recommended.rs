@@ -1,12 +1,11 @@
 //! Envelope pipeline that we recommend.
 
-use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, RatioDefinition, differences, median};
+use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, RatioDefinition, differences};
 use crate::error::EnvelopeError;
-use crate::noise::noise_level;
 use crate::peaks::{local_maxima, prominences};
 use crate::stretches::stretches;
 use nalgebra::{DMatrix, DVector};
-use record::{Clock, Record};
+use record::{Clock, Record, median, noise_level};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

@@ -1,6 +1,6 @@
 //! Stretches of a record without a gap: samples on both sides of a gap are no neighbors.
 
-use crate::envelope::median;
+use record::median;
 use std::ops::Range;
 
 /// Longest step between samples that is no gap, in usual steps: after a lost sample or two the neighbors are

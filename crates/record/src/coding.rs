@@ -1,6 +1,7 @@
 //! Codings of angles that jump though the motion does not: wraps after a full turn, and counts below zero
 //! written as unsigned numbers.
 
+use crate::statistics::extremes;
 use crate::unit::{Dimension, Unit};
 use std::f64::consts::TAU;
 
@@ -65,8 +66,7 @@ fn periods(unit: Option<Unit>, whole: bool) -> Vec<f64> {
 /// Returns a series unwrapped at steps of more than half a period. `None` if its values do not lie within one
 /// period, near both of its ends.
 fn unwrapped(values: &[f64], period: f64) -> Option<Vec<f64>> {
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [lowest, highest] = extremes(values);
     let near = NEAR_THE_END * period;
     let within = |from: f64| {
         lowest > from - 1e-3 * period

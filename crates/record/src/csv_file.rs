@@ -192,7 +192,7 @@ impl Observed {
         findings.extend(samples.decode(stated));
         let values: Vec<f64> = samples.values.iter().flatten().copied().collect();
         let assumed = counts.is_none() && stated.is_none();
-        let unit = stated.filter(|_| counts.is_none()).unwrap_or_else(|| match counts {
+        let unit = stated.unwrap_or_else(|| match counts {
             Some(_) => Unit::Radian,
             None => assumed_unit(heading, quantity, options.coordinate, &values),
         });

@@ -1,6 +1,7 @@
 //! Doubts about units, as sentences: what a header, the options and the numbers say against each other.
 
 use crate::heading::Heading;
+use crate::statistics::{extremes, upper_median};
 use crate::unit::Unit;
 
 /// Returns a sentence if an option states a different unit than the header.
@@ -28,11 +29,8 @@ pub(crate) fn unknown_unit(heading: &Heading, assumed: bool, taken: &str, key: &
 
 /// Returns a sentence if stamps assumed to be in seconds imply a sampling rate that hardly any logger has.
 pub(crate) fn odd_rate(stamps: &[f64]) -> Option<String> {
-    let mut steps: Vec<f64> =
-        stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next - one).collect();
-    steps.retain(|step| *step > 0.0);
-    steps.sort_by(f64::total_cmp);
-    let step = *steps.get(steps.len() / 2)?;
+    let steps = stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next - one);
+    let step = upper_median(steps.filter(|step| *step > 0.0).collect())?;
     let unit = match step {
         step if (1.0..1000.0).contains(&step) => "ms",
         step if (1e3..1e6).contains(&step) => "us",
@@ -51,8 +49,7 @@ pub(crate) fn odd_rate(stamps: &[f64]) -> Option<String> {
 /// right angle, angular velocities beyond the range of gyroscopes, and accelerations centered on 1, the
 /// gravity in g. With a unit from the header, only angles beyond a full turn are doubted.
 pub(crate) fn doubtful_unit(values: &[f64], unit: Unit, assumed: bool) -> Option<String> {
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let [lowest, highest] = extremes(values);
     let (half, middle) = (0.5 * (highest - lowest), 0.5 * (highest + lowest));
     let taken = if assumed {
         format!("the values state no unit and were taken to be in {}", unit.symbol())

@@ -1,6 +1,7 @@
 //! The part of a record in which the system swings freely, between hands that lift, hold, strike and stop it.
 
 use crate::record::Record;
+use crate::statistics::{extremes, noise_level, upper_median};
 
 /// A free swing within a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,26 +84,11 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     if is_most && !is_whole && !is_swing { found } else { Vec::new() }
 }
 
-/// Returns the standard deviation of white noise, from the median size of the fourth differences, in which a
-/// swing of twelve samples leaves a hundredth of its amplitude; of white noise of variance s², they have the
-/// variance 70 s².
-fn noise(values: &[f64]) -> f64 {
-    let fourth = values.windows(5).filter_map(|five| match five {
-        [a, b, c, d, e] => Some((a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs()),
-        _ => None,
-    });
-    let mut fourth: Vec<f64> = fourth.collect();
-    fourth.sort_by(f64::total_cmp);
-    // Fewer than five values have no noise.
-    fourth.get(fourth.len() / 2).map_or(0.0, |median| median / (0.674_5 * 70_f64.sqrt()))
-}
-
 /// Returns the turning points of a series: extremes from which it turns back by eight times its noise and a
 /// thirtieth of its range at least. Returns that height as well.
 fn turning_points(values: &[f64]) -> (Vec<Turn>, f64) {
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let noise = noise(values);
+    let [lowest, highest] = extremes(values);
+    let noise = noise_level(values);
     let least = (8.0 * noise).max((highest - lowest) / 30.0);
     let (mut found, mut side) = (Vec::new(), 0.0);
     let (mut high, mut low) = ((0, f64::NEG_INFINITY), (0, f64::INFINITY));
@@ -172,10 +158,8 @@ impl<'a> HalfSwings<'a> {
         let usual = times.each_ref().map(|times| {
             let between = pairs().map(|(one, next)| middle(next, times) - middle(one, times));
             let of_large = heights.iter().zip(between).filter(|(height, _)| **height > large);
-            let mut of_large: Vec<f64> = of_large.map(|(_, duration)| duration).collect();
-            of_large.sort_by(f64::total_cmp);
             // Nothing is longer than usual if no half swing is large.
-            of_large.get(of_large.len() / 2).copied().unwrap_or(f64::INFINITY)
+            upper_median(of_large.map(|(_, duration)| duration).collect()).unwrap_or(f64::INFINITY)
         });
         let durations = |times: &[f64], usual: f64| -> Vec<f64> {
             let ends = |turn: &Turn| {
@@ -216,7 +200,8 @@ impl<'a> HalfSwings<'a> {
         let unlike = (after - before).abs() > UNLIKE * before.max(after);
         let uneven = unlike
             && before.min(after) > self.large
-            && self.both(|durations, _| {
+            // Clocks of hosts stand still and jump though the samples are even, and rows may be missing.
+            && self.durations.iter().all(|durations| {
                 let pair = number.checked_sub(1).and_then(|at| durations.get(at)).zip(durations.get(number));
                 pair.is_some_and(|(one, next)| one.max(*next) > UNEVEN * one.min(*next))
             });
@@ -281,20 +266,12 @@ impl<'a> HalfSwings<'a> {
         (FEWEST..=falls.len().checked_sub(1)?)
             .find(|number| {
                 let (before, after) = falls.split_at(*number);
-                let mut sorted = before.to_vec();
-                sorted.sort_by(f64::total_cmp);
-                let Some(median) = sorted.get(sorted.len() / 2) else { return false };
+                let Some(median) = upper_median(before.to_vec()) else { return false };
                 let beside = heights.get(*number).copied().unwrap_or(f64::INFINITY);
                 let least = (SLOWED * median).max(0.05 * beside).max(0.5 * self.least);
                 beside > self.large && after.iter().all(|fall| *fall > least)
             })
             .map(|number| number + 1)
-    }
-
-    /// Returns `true` if a condition holds for the durations by the stamps and for those by the rows: clocks
-    /// of hosts stand still and jump though the samples are even, and rows may be missing.
-    fn both(&self, holds: impl Fn(&[f64], f64) -> bool) -> bool {
-        self.durations.iter().zip(self.usual).all(|(durations, usual)| holds(durations, usual))
     }
 
     /// Returns `true` if the first turning point is the beginning of the record, and not at rest or held there.

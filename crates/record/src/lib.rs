@@ -33,6 +33,7 @@ mod roughness;
 mod runs;
 mod stamps;
 mod statement;
+mod statistics;
 mod swing;
 mod table;
 #[cfg(test)]
@@ -53,6 +54,7 @@ pub use reading::{ColumnReading, Coordinate, Reading};
 pub use record::{InputRow, Quantity, Record};
 pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};
+pub use statistics::{extremes, median, noise_level};
 pub use unit::{TimeUnit, Unit};
 pub use words::{counted, two_digits};
 

@@ -2,6 +2,7 @@
 
 use crate::line::{Bend, Line};
 use crate::roughness::off_cubic;
+use crate::statistics::extremes;
 
 /// Number and stamp of the last sample of each group of equal stamps.
 type Ends = Vec<(f64, f64)>;
@@ -206,8 +207,8 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
 
 /// Returns the largest minus the smallest value.
 fn range(series: &[f64]) -> f64 {
-    let highest = series.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    highest - series.iter().copied().fold(f64::INFINITY, f64::min)
+    let [lowest, highest] = extremes(series);
+    highest - lowest
 }
 
 /// Returns first guesses of the interval, from stretches of groups with few to many losses.

@@ -6,6 +6,7 @@ use crate::heading::Heading;
 use crate::options::ReadOptions;
 use crate::reading::Coordinate;
 use crate::record::Quantity;
+use crate::statistics::extremes;
 use crate::swing::Swing;
 use crate::unit::{Dimension, Unit};
 
@@ -173,8 +174,7 @@ pub(crate) fn assumed_unit(
 }
 
 fn reaches_turns(values: &[f64]) -> bool {
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let [lowest, highest] = extremes(values);
     0.5 * (highest - lowest) > DEGREES_BEYOND && values.iter().any(|value| value.fract() != 0.0)
 }
 
@@ -271,7 +271,7 @@ impl Roles<'_> {
             left.iter().filter_map(|(at, column)| Some((self.score(&column.heading)?, *at))).collect();
         found.sort_unstable();
         match found.as_slice() {
-            [(_, at)] => match self.swings_without_name(&left, &found, swing).filter(|_| left.len() > 1) {
+            [(_, at)] => match self.swings_without_name(&left, &found, swing) {
                 Some(taken) => Ok(taken),
                 None => Ok((Pick { at: *at, because: BY_NAME }, None)),
             },
@@ -302,13 +302,10 @@ impl Roles<'_> {
         swing: &dyn Fn(usize) -> Swing,
     ) -> Option<(Pick, Option<String>)> {
         let is_named = |at: usize| named.iter().any(|(_, other)| *other == at);
-        if named.iter().any(|(_, at)| swing(*at).is_regular) {
-            return None;
-        }
         let others = left.iter().filter(|(at, column)| !is_named(*at) && !drives(&column.heading));
         let mut swinging = others.filter(|(at, _)| swing(*at).is_regular);
         let (at, _) = swinging.next()?;
-        let only = swinging.next().is_none();
+        let only = swinging.next().is_none() && !named.iter().any(|(_, at)| swing(*at).is_regular);
         only.then(|| (Pick { at: *at, because: BY_SWING }, self.by_swing_said(*at, named)))
     }
 

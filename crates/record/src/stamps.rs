@@ -3,6 +3,7 @@
 use crate::line::{Bend, Line};
 use crate::lost::Numbers;
 use crate::roughness::preference_for_even;
+use crate::statistics::upper_median;
 use std::borrow::Cow;
 
 /// Statistics of the stamps.
@@ -147,10 +148,8 @@ pub(crate) fn statistics(
 
 /// Returns the upper median of the steps between groups.
 fn middle(steps: &[f64]) -> f64 {
-    let mut ordered = steps.to_vec();
-    ordered.sort_by(f64::total_cmp);
     // There are at least two groups, so there is a step.
-    ordered.get(ordered.len() / 2).copied().unwrap_or_default()
+    upper_median(steps.to_vec()).unwrap_or_default()
 }
 
 /// Returns the standard deviation of independent errors from second differences, whose variance is six times

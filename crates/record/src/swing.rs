@@ -1,5 +1,7 @@
 //! Comparison of columns by their data: which one swings, and how far.
 
+use crate::statistics::upper_median;
+
 /// Smallest number of half swings for a column to swing.
 const FEWEST_HALF_SWINGS: usize = 4;
 /// Height, over the root mean square, that a column has to pass on both sides for a half swing to count.
@@ -60,13 +62,12 @@ fn regular(about: &[f64]) -> bool {
             side = value.signum();
         }
     }
-    let mut spans: Vec<f64> =
+    let spans: Vec<f64> =
         crossings.iter().zip(crossings.iter().skip(1)).map(|(one, next)| next - one).collect();
     if spans.len() < FEWEST_HALF_SWINGS {
         return false;
     }
-    spans.sort_by(f64::total_cmp);
-    let Some(median) = spans.get(spans.len() / 2).copied() else { return false };
+    let Some(median) = upper_median(spans.clone()) else { return false };
     let alike = spans.iter().filter(|span| (*span - median).abs() <= (ALIKE * median).max(1.0)).count();
     median > 2.0 && 4 * alike >= 3 * spans.len()
 }

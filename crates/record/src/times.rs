@@ -1,6 +1,7 @@
 //! Conversion of a file's time column to stamps in seconds.
 
 use crate::dialect::{Dialect, is_date};
+use crate::statistics::upper_median;
 use crate::unit::TimeUnit;
 use jiff::Timestamp;
 use jiff::civil::{DateTime, Time};
@@ -128,9 +129,7 @@ fn whole_steps(stamps: &[Stamp]) -> Option<TimeUnit> {
         return None;
     }
     let steps = stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next.since(*one));
-    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-    steps.sort_by(f64::total_cmp);
-    match *steps.get(steps.len() / 2)? {
+    match upper_median(steps.filter(|step| *step > 0.0).collect())? {
         step if (2.0..1e3).contains(&step) => Some(TimeUnit::Millisecond),
         step if (1e3..1e6).contains(&step) => Some(TimeUnit::Microsecond),
         _ => None,

@@ -6,7 +6,9 @@ use diagnosis::Observations;
 use dynamics::Coordinate;
 use dynamics::chain::Observed;
 use experiment::StatedNominal;
-use record::{Clock, ClockChoice, Fault, Origin, Quantity, ReadOptions, Record, Source, Statements, Unit};
+use record::{
+    Clock, ClockChoice, Fault, Origin, Quantity, ReadOptions, Record, Source, Statements, Unit, extremes,
+};
 use report::format::{quantity, significant};
 use results::{DataSummary, RecordRow};
 use std::path::Path;
@@ -196,11 +198,7 @@ impl Loaded {
     fn check_turns(&self) -> Result<(), WorkflowError> {
         let read = &self.source.reading.value;
         let by_header = read.unit.as_deref() == Some(Unit::Radian.symbol()) && read.is_stated_by_header();
-        let values = self.record.values().iter().copied();
-        let (lowest, highest) = values
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lowest, highest), value| {
-                (lowest.min(value), highest.max(value))
-            });
+        let [lowest, highest] = extremes(self.record.values());
         let largest = 0.5 * (highest - lowest);
         if by_header && largest > std::f64::consts::TAU {
             return Err(WorkflowError::LooksLikeDegrees { file: self.source.path.clone(), largest });
@@ -276,8 +274,7 @@ pub fn bias(record: &Record) -> Option<String> {
     }
     let values = record.values();
     let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let [lowest, highest] = extremes(values);
     let half = 0.5 * (highest - lowest);
     let (mut swings, mut side) = (0, 0.0);
     for off in values.iter().map(|value| value - mean).filter(|off| off.abs() > HALF_SWING * half) {

@@ -139,12 +139,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
 
 /// Returns `true` if a diagnosis can take a record: it is driven, or has a spring and enough cycles.
 fn is_diagnosable(looked: &Looked) -> bool {
-    let oscillator = &looked.oscillator;
-    let times = &looked.look.clock.times_s;
-    let duration_s = times.first().zip(times.last()).map(|(first, last)| last - first);
-    let frequency = oscillator.natural_frequency_hz();
-    let cycles = frequency.zip(duration_s).map(|(frequency, duration_s)| frequency.value * duration_s);
-    oscillator.input_gain.is_some() || cycles.is_some_and(|cycles| cycles >= FEW_CYCLES)
+    looked.oscillator.input_gain.is_some() || looked.cycles().is_some_and(|cycles| cycles >= FEW_CYCLES)
 }
 
 /// Returns `true` if a record has the turning points from which a damping ratio can be estimated.
@@ -203,6 +198,17 @@ fn looked_as(path: &Path, reading: &Reading, driven: bool) -> Result<Looked, Tra
 }
 
 impl Looked {
+    fn duration_s(&self) -> f64 {
+        let times = &self.look.clock.times_s;
+        // A record without samples has a duration of zero.
+        times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
+    }
+
+    /// Returns the number of cycles in the record; `None` without a natural frequency.
+    fn cycles(&self) -> Option<f64> {
+        Some(self.oscillator.natural_frequency_hz()?.value * self.duration_s())
+    }
+
     fn each(&self) -> EachLog {
         EachLog {
             path: self.path.display().to_string(),
@@ -247,7 +253,7 @@ impl Found {
                 "path": self.surest.look.source.path,
                 "digest": self.surest.look.source.digest,
                 "samples": self.surest.look.record.len(),
-                "duration_s": self.duration_s(),
+                "duration_s": self.surest.duration_s(),
                 "sample_rate_hz": self.surest.look.clock.sample_rate_hz,
                 "clock": self.surest.look.clock.kind.name(),
                 "clock_reason": self.surest.look.clock.reason,
@@ -281,7 +287,12 @@ impl Found {
             row("reading", self.surest.look.source.reading.sentence.clone()),
             row(
                 "samples",
-                format!("{} in {:.3} s, {:.2} Hz", record.len(), self.duration_s(), clock.sample_rate_hz),
+                format!(
+                    "{} in {:.3} s, {:.2} Hz",
+                    record.len(),
+                    self.surest.duration_s(),
+                    clock.sample_rate_hz
+                ),
             ),
             row("clock", format!("{}: {}", clock.kind.name(), clock.reason)),
         ];
@@ -337,11 +348,6 @@ impl Found {
         format!("{}\n\nthe most certain of them: ", table(&heads, rows.collect()))
     }
 
-    fn duration_s(&self) -> f64 {
-        let times = &self.surest.look.clock.times_s;
-        times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
-    }
-
     fn findings(&self) -> Vec<String> {
         let read = self.surest.look.source.findings.iter().map(|finding| in_options(finding));
         read.chain(bias(&self.surest.look.record))
@@ -389,8 +395,7 @@ impl Found {
 
     /// Returns a warning if the record is too short for its decay to show.
     fn few_cycles(&self) -> Option<String> {
-        let frequency = self.surest.oscillator.natural_frequency_hz()?.value;
-        let cycles = frequency * self.duration_s();
+        let cycles = self.surest.cycles()?;
         (cycles < FEW_CYCLES).then(|| {
             format!(
                 "the record shows {cycles:.1} cycles, too few to see damping or what a simulator lacks; give \
