@@ -145,6 +145,10 @@ impl Envelope {
 /// Envelope, with other results of its extraction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extraction {
+    /// Name of the pipeline.
+    pub pipeline: &'static str,
+    /// Reason for this pipeline if the record decided it, as a clause.
+    pub because: Option<String>,
     /// Envelope of the record.
     pub envelope: Envelope,
     /// Time of the first peak after the first sample, in seconds.

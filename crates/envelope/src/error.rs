@@ -20,6 +20,12 @@ pub enum EnvelopeError {
         /// Advice to the user.
         remedy: String,
     },
+    /// The motion comes back to rest without a swing.
+    #[error(
+        "the motion returns to rest without swinging, as an overdamped or critically damped system does: it has no \
+         envelope. `trainer init` reads its damping ratio from the samples"
+    )]
+    NoSwing,
     /// A peak at or below the rest position has no logarithm.
     #[error(
         "peak {number} at {time_s:.3} s lies {amplitude:.3e} {unit} from the rest position, on the \

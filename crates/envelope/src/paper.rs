@@ -77,6 +77,8 @@ impl PaperPipeline {
         // Never absent either.
         let first_peak_s = peak_times.first().copied().unwrap_or(0.0);
         Ok(Extraction {
+            pipeline: "paper",
+            because: None,
             envelope: Envelope::new(peak_times, log_amplitudes, TAU / period_s)?,
             first_peak_s,
             period_s,

@@ -131,6 +131,8 @@ impl RecommendedPipeline {
         let period_s = median(two_apart(&decay)).unwrap_or(coarse_period);
         let first = decay.first().map(|turn| turn.time).ok_or_else(|| too_few(0))?;
         Ok(Extraction {
+            pipeline: "recommended",
+            because: None,
             first_peak_s: first - clock.start_s(),
             envelope: Envelope::new(times, log_amplitudes, TAU / period_s)?
                 .with_log_std_errors(errors)

@@ -1,11 +1,11 @@
 //! Resolution of a configuration document into an experiment.
 
+use crate::pipelines::{self, EnvelopeSettings};
 use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
-use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
 use estimator::{Entry, Estimator};
 use record::{
-    Clock, ClockChoice, CsvColumns, Filter, Format, Missing, Origin, Quantity, ReadOptions, Record,
-    Statements, TimeUnit, Unit,
+    ClockChoice, CsvColumns, Filter, Format, Missing, Origin, Quantity, ReadOptions, Statements, TimeUnit,
+    Unit,
 };
 use serde::Deserialize;
 use settings::{Document, Field, Resolved, Section, SettingsError};
@@ -148,56 +148,6 @@ impl DataSettings {
     }
 }
 
-/// Envelope pipeline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Pipeline {
-    /// [`PaperPipeline`].
-    Paper,
-    /// [`RecommendedPipeline`].
-    Recommended,
-}
-
-impl Pipeline {
-    /// Returns the name used in configurations and results.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::Recommended => "recommended",
-        }
-    }
-}
-
-/// Section `envelope` and its subsections.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EnvelopeSettings {
-    /// Pipeline in force.
-    pub pipeline: Pipeline,
-    /// Settings of the paper's pipeline.
-    pub paper: PaperPipeline,
-    /// Settings of the recommended pipeline.
-    pub recommended: RecommendedPipeline,
-}
-
-impl EnvelopeSettings {
-    /// Runs a pipeline on a record.
-    ///
-    /// # Errors
-    /// The pipeline's error.
-    pub fn extract(
-        &self,
-        pipeline: Pipeline,
-        record: &Record,
-        clock: &Clock,
-    ) -> Result<Extraction, EnvelopeError> {
-        match pipeline {
-            Pipeline::Paper => self.paper.extract(record, clock),
-            Pipeline::Recommended => self.recommended.extract(record, clock),
-        }
-    }
-}
-
 /// Section `fit`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -218,11 +168,6 @@ pub struct CheckpointSettings {
     pub interval_s: f64,
     /// Steps between two checkpoints; replaces the time interval if given.
     pub interval_steps: Option<u64>,
-}
-
-#[derive(Deserialize)]
-struct PipelineName {
-    pipeline: Pipeline,
 }
 
 /// Checks a document, with overrides applied, against the schema, the registry of estimators and the names of
@@ -249,7 +194,6 @@ pub fn resolve(
     let resolved = Resolved::new(document, &sections).map_err(|error| of_another(error, document))?;
 
     let top: Top = resolved.section("")?;
-    let pipeline: PipelineName = resolved.section("envelope")?;
     let task = match method {
         Some(Named::Learned(entry)) => {
             Task::Estimate(Single::Learned { entry, estimator: (entry.build)(&resolved)?.into() })
@@ -266,20 +210,11 @@ pub fn resolve(
         name: top.name.unwrap_or(default_name),
         seed: top.seed,
         data: resolved.section("data")?,
-        envelope: pipelines(&resolved, pipeline.pipeline)?,
+        envelope: pipelines::settings(&resolved)?,
         fit: resolved.section("fit")?,
         checkpoint: resolved.section("checkpoint")?,
         task,
         resolved,
-    })
-}
-
-/// Reads the settings of both pipelines; `pipeline` is the one in force.
-pub(crate) fn pipelines(resolved: &Resolved, pipeline: Pipeline) -> Result<EnvelopeSettings, SettingsError> {
-    Ok(EnvelopeSettings {
-        pipeline,
-        paper: resolved.section("envelope.paper")?,
-        recommended: resolved.section("envelope.recommended")?,
     })
 }
 

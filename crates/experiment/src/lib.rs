@@ -9,6 +9,7 @@ mod experiment;
 mod json_schema;
 mod learning;
 mod nominal;
+mod pipelines;
 mod prediction;
 mod schema;
 pub mod sweep;
@@ -17,14 +18,14 @@ pub mod sweep;
 mod tests;
 
 pub use experiment::{
-    CheckpointSettings, Claims, Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings,
-    Pipeline, Single, Task, resolve,
+    CheckpointSettings, Claims, Comparison, DataSettings, Experiment, FitSettings, Single, Task, resolve,
 };
 pub use json_schema::{compare_schema, estimate_schema, predict_schema};
 pub use learning::{
     LearnSettings, LearnSource, LearnStudy, LearningProblem, is_learning, learn_schema, resolve_learning,
 };
 pub use nominal::{KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, StatedNominal, resolve_nominal};
+pub use pipelines::{EnvelopeSettings, Pipeline, envelope_by_default};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
     is_prediction, resolve_prediction,

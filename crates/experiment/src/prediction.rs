@@ -1,7 +1,8 @@
 //! `task = "predict"`: many methods on several problems, scored on held-out peaks.
 
-use crate::experiment::{CheckpointSettings, DataSettings, EnvelopeSettings, Pipeline, Top, pipelines};
-use crate::schema::{CHECKPOINT, DATA, PAPER, PLAIN, RECOMMENDED, TOP};
+use crate::experiment::{CheckpointSettings, DataSettings, Top};
+use crate::pipelines::{self, EnvelopeSettings, Pipeline};
+use crate::schema::{CHECKPOINT, DATA, PAPER, PLAIN, RECOMMENDED, SAMPLES, TOP};
 use estimator::Entry;
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
@@ -132,6 +133,7 @@ pub(crate) const PREDICT_SECTIONS: &[Section<'static>] = &[
     Section { name: "checkpoint", fields: CHECKPOINT },
     Section { name: "envelope.paper", fields: PAPER },
     Section { name: "envelope.recommended", fields: RECOMMENDED },
+    Section { name: "envelope.samples", fields: SAMPLES },
 ];
 
 const PREDICT: &[Field] = &[
@@ -216,9 +218,9 @@ const TITLE: Field =
 
 const PIPELINE: Field = Field {
     key: "pipeline",
-    kind: Kind::Choice(&["paper", "recommended"]),
+    kind: Kind::Choice(&["paper", "recommended", "samples"]),
     default: Default::Text("recommended"),
-    meaning: "Method of finding the peaks: that of the paper, or the recommended one.",
+    meaning: "Pipeline from the record to its envelope: the paper's, the recommended one, or a fit of the samples.",
     ..PLAIN
 };
 
@@ -340,7 +342,7 @@ pub fn resolve_prediction(
     Ok(PredictionStudy {
         name: top.name.unwrap_or(top.task),
         seed: top.seed,
-        envelope: pipelines(&resolved, Pipeline::Recommended)?,
+        envelope: pipelines::each(&resolved, Pipeline::Recommended)?,
         settings,
         checkpoint: resolved.section("checkpoint")?,
         problems,

@@ -1,6 +1,7 @@
 //! Configuration keys of an experiment, except those of the estimators.
 
 use envelope::RecommendedPipeline;
+use identify::SamplesPipeline;
 use record::{ClockChoice, Format, Missing, Origin, TimeUnit, Unit};
 use settings::{Default, Field, Kind, Section};
 
@@ -15,6 +16,7 @@ pub const SECTIONS: &[Section<'static>] = &[
     Section { name: "envelope", fields: ENVELOPE },
     Section { name: "envelope.paper", fields: PAPER },
     Section { name: "envelope.recommended", fields: RECOMMENDED },
+    Section { name: "envelope.samples", fields: SAMPLES },
     Section { name: "fit", fields: FIT },
     Section { name: "checkpoint", fields: CHECKPOINT },
 ];
@@ -217,9 +219,10 @@ pub(crate) const DATA: &[Field] = &[
 
 const ENVELOPE: &[Field] = &[Field {
     key: "pipeline",
-    kind: Kind::Choice(&["paper", "recommended"]),
-    default: Default::Text("recommended"),
-    meaning: "Method of finding the peaks: that of the paper, or the recommended one.",
+    kind: Kind::Choice(&["auto", "paper", "recommended", "samples"]),
+    default: Default::Text("auto"),
+    meaning: "Pipeline from the record to its envelope: the paper's peaks, the recommended peaks, a fit of the samples, or \
+              the last where the recommended peaks are few or mix several modes.",
     ..PLAIN
 }];
 
@@ -289,6 +292,25 @@ pub(crate) const RECOMMENDED: &[Field] = &[
         unit: "noise standard deviations",
         meaning: "Smallest amplitude that is used.",
         source: "the logarithm of a height known to 1/8 is known to 0.13 at worst",
+    },
+];
+
+pub(crate) const SAMPLES: &[Field] = &[
+    Field {
+        key: "window_periods",
+        kind: Kind::Float { min: 0.1, max: 100.0 },
+        default: Default::Float(SamplesPipeline::DEFAULT.window_periods),
+        unit: "periods",
+        meaning: "Length of the windows whose samples are fitted; shorter where the amplitude falls to 1/e in less.",
+        source: "two amplitudes a period, as many as there are peaks",
+    },
+    Field {
+        key: "floor_in_errors",
+        kind: Kind::Float { min: 1.0, max: 1e6 },
+        default: Default::Float(SamplesPipeline::DEFAULT.floor_in_errors),
+        unit: "standard errors",
+        meaning: "Smallest amplitude that is used.",
+        source: "the logarithm of an amplitude known to 1/8 is known to 0.13",
     },
 ];
 

@@ -13,11 +13,13 @@ mod error;
 mod modes;
 mod observed;
 mod oscillator;
+mod samples_pipeline;
 mod weak;
 
 pub use error::IdentifyError;
 pub use modes::{Mode, modes};
 pub use oscillator::{Basis, Estimated, LinearOscillator};
+pub use samples_pipeline::SamplesPipeline;
 
 use observed::input;
 use record::{Clock, Record};

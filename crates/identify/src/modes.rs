@@ -84,7 +84,21 @@ pub fn modes(record: &Record, clock: &Clock) -> Vec<Mode> {
         return Vec::new();
     }
     // A record without motion has no modes.
-    Samples::new(record, clock).and_then(|samples| samples.modes()).unwrap_or_default()
+    Samples::new(record, clock)
+        .and_then(|samples| Some(samples.reported(&samples.fitted()?)))
+        .unwrap_or_default()
+}
+
+/// Returns the angular frequency in rad/s and the decay in 1/s of the strongest mode of a free decay, with the
+/// record's values minus a slow trend and all other modes; `None` without a clear mode.
+pub(crate) fn separated(record: &Record, clock: &Clock) -> Option<(f64, f64, Vec<f64>)> {
+    let samples = Samples::new(record, clock)?;
+    let fit = samples.fitted()?;
+    let lines = fit.lines.iter().enumerate();
+    let (number, strongest) = lines.max_by(|(_, one), (_, other)| one.energy.total_cmp(&other.energy))?;
+    let values = fit.residuals(&samples, &[number]).into_iter().map(|value| samples.size * value);
+    let Line { omega, decay } = strongest.line;
+    Some((omega / samples.duration_s, decay / samples.duration_s, values.collect()))
 }
 
 impl Samples {
@@ -95,7 +109,8 @@ impl Samples {
         Self { times: picked(&self.times), values: picked(&self.values), ..*self }
     }
 
-    fn modes(&self) -> Option<Vec<Mode>> {
+    /// Fits all lines that a record shows.
+    fn fitted(&self) -> Option<Fit> {
         let mut best = Fit::new(self, &[])?;
         let (mut excluded, mut refused) = (Vec::new(), 0);
         while best.lines.len() < MOST_LINES && refused < MOST_REFUSED {
@@ -108,8 +123,7 @@ impl Samples {
                 }
             }
         }
-        let best = Fit::refined(self, &best.guesses())?;
-        Some(self.reported(&best))
+        Fit::refined(self, &best.guesses())
     }
 
     /// Returns the best fit with one more line than a given one, with the samples that it is a fit of.

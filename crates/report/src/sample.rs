@@ -159,6 +159,7 @@ fn result() -> EstimationResult {
         },
         envelope: EnvelopeSummary {
             pipeline: "paper".into(),
+            pipeline_because: None,
             peaks: 69,
             samples: 24_810,
             period_s: 0.288_000_0,

@@ -97,7 +97,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
 pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
     let envelope = &result.envelope;
     vec![
-        fact("Pipeline", envelope.pipeline.clone()),
+        fact("Pipeline", envelope.pipeline_in_words()),
         fact("Peaks", whole(envelope.peaks)),
         fact("Samples after interpolation", whole(envelope.samples)),
         fact("Median period", quantity(&significant(envelope.period_s, 6), "s")),

@@ -150,9 +150,12 @@ impl DataSummary {
 /// Envelope that every method was fitted to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnvelopeSummary {
-    /// `"paper"` or `"recommended"`.
+    /// `"paper"`, `"recommended"` or `"samples"`.
     pub pipeline: String,
-    /// Number of peaks.
+    /// Reason for the pipeline if the record decided it, as a clause.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pipeline_because: Option<String>,
+    /// Number of peaks; of windows for `"samples"`.
     pub peaks: usize,
     /// Number of samples after interpolation; equal to `data.samples` if nothing is interpolated.
     pub samples: usize,
@@ -167,6 +170,17 @@ pub struct EnvelopeSummary {
     pub first_peak_s: f64,
 }
 
+impl EnvelopeSummary {
+    /// Returns the name of the pipeline, with the reason if the record decided it.
+    #[must_use]
+    pub fn pipeline_in_words(&self) -> String {
+        match &self.pipeline_because {
+            Some(because) => format!("{}, since {because}", self.pipeline),
+            None => self.pipeline.clone(),
+        }
+    }
+}
+
 /// Closed-form least squares of ln A on t.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OracleSummary {
@@ -176,7 +190,7 @@ pub struct OracleSummary {
     pub log_amplitude: f64,
     /// Coefficient of determination.
     pub r_squared: f64,
-    /// Damping ratio ζ by the pipeline's definition: λ/ω (`"paper"`) or λ/√(λ² + ω²) (`"recommended"`).
+    /// Damping ratio ζ by the pipeline's definition: λ/ω (`"paper"`) or λ/√(λ² + ω²) (the others).
     pub zeta: f64,
     /// Standard error of λ under independent residuals, in 1/s. It includes the sensor noise, which weighs
     /// more as the amplitude falls, if the pipeline knows it.

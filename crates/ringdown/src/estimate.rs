@@ -14,7 +14,7 @@ use settings::Document;
 /// Options of an estimate, with the defaults of the command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EstimateOptions {
-    /// Pipeline from the record to its peaks; by default the recommended one.
+    /// Pipeline from the record to its peaks; by default chosen by the record.
     pub pipeline: Pipeline,
     /// Root seed of all random draws.
     pub seed: u64,
@@ -27,7 +27,7 @@ pub struct EstimateOptions {
 
 impl Default for EstimateOptions {
     fn default() -> Self {
-        Self { pipeline: Pipeline::Recommended, seed: 0, max_steps: None, settings: String::new() }
+        Self { pipeline: Pipeline::Auto, seed: 0, max_steps: None, settings: String::new() }
     }
 }
 

@@ -86,7 +86,7 @@ fn fits(experiment: &Experiment) -> Result<Vec<Line>, TrainerError> {
         },
     };
     let data = input.data_summary(experiment);
-    let envelope = input.envelope_summary(experiment);
+    let envelope = input.envelope_summary();
     let mut lines = vec![
         line("fits", method),
         line("seeds", format!("{}, from {} on", experiment.fit.seeds, experiment.seed)),

@@ -48,7 +48,7 @@ impl Input {
 
     fn all_pipelines(&self, experiment: &Experiment) -> Vec<PipelineRow> {
         let settings = &experiment.envelope;
-        let in_force = (settings.pipeline.name(), self.clock.kind.name());
+        let in_force = (self.extraction.pipeline, self.clock.kind.name());
         let mut rows = vec![row(in_force, Ok(fit(&self.extraction, &self.oracle)))];
         let host = Clock::new(&self.record, ClockChoice::Host).ok();
         for (pipeline, clock) in [
@@ -81,10 +81,11 @@ impl Input {
         )
     }
 
-    pub(crate) fn envelope_summary(&self, experiment: &Experiment) -> EnvelopeSummary {
+    pub(crate) fn envelope_summary(&self) -> EnvelopeSummary {
         let envelope = &self.extraction.envelope;
         EnvelopeSummary {
-            pipeline: experiment.envelope.pipeline.name().to_owned(),
+            pipeline: self.extraction.pipeline.to_owned(),
+            pipeline_because: self.extraction.because.clone(),
             peaks: envelope.len(),
             samples: self.extraction.samples,
             period_s: self.extraction.period_s,

@@ -10,7 +10,7 @@ use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
-use envelope::RecommendedPipeline;
+use experiment::envelope_by_default;
 use identify::{Estimated, LinearOscillator, Mode, identify};
 use modes::uncertain;
 use record::{Fault, Look, ReadOptions, look};
@@ -126,11 +126,15 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         ));
     }
     // Only a free decay has an envelope from which a damping ratio can be estimated.
-    if oscillator.input_gain.is_none() && surest.modes.len() < 2 && has_envelope(look) {
+    let envelope = envelope_by_default(&look.record, &look.clock);
+    if let Some(envelope) = envelope.ok().filter(|_| oscillator.input_gain.is_none()) {
         let path = path_from(&folder, path).display().to_string();
         files.push(("estimate.toml", files::configuration(&path, &look.source.reading.options())));
         next.push((
-            "the damping ratio from the decay of the peaks",
+            match envelope.because {
+                Some(_) => "the damping ratio from the samples",
+                None => "the damping ratio from the decay of the peaks",
+            },
             format!("trainer {}", path_word(&folder.join("estimate.toml"))),
         ));
     }
@@ -140,11 +144,6 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
 /// Returns `true` if a diagnosis can take a record: it is driven, or has a spring and enough cycles.
 fn is_diagnosable(looked: &Looked) -> bool {
     looked.oscillator.input_gain.is_some() || looked.cycles().is_some_and(|cycles| cycles >= FEW_CYCLES)
-}
-
-/// Returns `true` if a record has the turning points from which a damping ratio can be estimated.
-fn has_envelope(look: &Look) -> bool {
-    RecommendedPipeline::DEFAULT.extract(&look.record, &look.clock).is_ok()
 }
 
 /// Returns the folder for the files of a log: its name without its extension, or its name with `-nominal`
@@ -398,8 +397,8 @@ impl Found {
         let cycles = self.surest.cycles()?;
         (cycles < FEW_CYCLES).then(|| {
             format!(
-                "the record shows {cycles:.1} cycles, too few to see damping or what a simulator lacks; give \
-                 a record of ten cycles or more"
+                "the record shows {cycles:.1} cycles, too few to see what a simulator lacks; give a record of ten cycles or \
+                 more"
             )
         })
     }

@@ -12,8 +12,8 @@ pub(super) fn uncertain(estimated: Estimated) -> String {
 pub(super) fn remark(modes: &[Mode]) -> Option<String> {
     (modes.len() > 1).then(|| {
         format!(
-            "the record holds {} modes; the numbers above are those of the strongest. The decay of its peaks mixes them, so \
-             that no estimate is suggested",
+            "the record holds {} modes; the numbers above are those of the strongest, and so is an estimate: the others are \
+             taken away before",
             modes.len()
         )
     })

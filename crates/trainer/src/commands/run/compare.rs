@@ -179,15 +179,11 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
     let derived = derived(run, comparison.inertia_kg_m2);
     let cautions = match comparison.claims {
         Claims::None => Vec::new(),
-        Claims::Paper => cautions(
-            input,
-            &input.envelope_summary(experiment),
-            &derived,
-            max_error_percent,
-            &input.pipelines,
-        ),
+        Claims::Paper => {
+            cautions(input, &input.envelope_summary(), &derived, max_error_percent, &input.pipelines)
+        }
     };
-    let envelope = input.envelope_summary(experiment);
+    let envelope = input.envelope_summary();
     let pipelines = input.pipelines.clone();
     ComparisonResult {
         schema: RESULT_SCHEMA.to_owned(),

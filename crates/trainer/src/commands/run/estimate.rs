@@ -82,7 +82,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         estimator_title: method.title().to_owned(),
         seed: first.seed,
         data: input.data_summary(experiment),
-        envelope: input.envelope_summary(experiment),
+        envelope: input.envelope_summary(),
         oracle: input.oracle_summary(),
         estimate: EstimateSummary {
             decay_rate: estimate.decay_rate,

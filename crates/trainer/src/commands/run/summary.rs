@@ -52,6 +52,7 @@ fn numbers(result: &EstimationResult) -> String {
     let error = estimate.zeta_std_error.unwrap_or_default();
     let rate_error = error * estimate.decay_rate / estimate.zeta;
     let mut rows = vec![
+        row("pipeline", result.envelope.pipeline_in_words()),
         row("peaks", result.envelope.peaks.to_string()),
         row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),
         row("decay rate λ", format!("{} 1/s", format::with_uncertainty(estimate.decay_rate, rate_error))),
@@ -145,6 +146,7 @@ fn oscillation(result: &ComparisonResult) -> String {
         false => with_inertia.to_owned(),
     };
     let mut rows = vec![
+        row("pipeline", result.envelope.pipeline_in_words()),
         row("peaks", result.envelope.peaks.to_string()),
         row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
         row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),

@@ -1,0 +1,141 @@
+//! Pipelines from a record to an envelope, and the choice between them.
+
+use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
+use identify::SamplesPipeline;
+use record::{Clock, Record};
+use serde::Deserialize;
+use settings::{Resolved, SettingsError};
+
+/// Envelope pipeline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pipeline {
+    /// [`RecommendedPipeline`] for a record with enough peaks of one mode, else [`SamplesPipeline`].
+    Auto,
+    /// [`PaperPipeline`].
+    Paper,
+    /// [`RecommendedPipeline`].
+    Recommended,
+    /// [`SamplesPipeline`].
+    Samples,
+}
+
+impl Pipeline {
+    /// Returns the name used in configurations and results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Paper => "paper",
+            Self::Recommended => "recommended",
+            Self::Samples => "samples",
+        }
+    }
+}
+
+/// Section `envelope` and its subsections.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvelopeSettings {
+    /// Pipeline in force.
+    pub pipeline: Pipeline,
+    /// Settings of the paper's pipeline.
+    pub paper: PaperPipeline,
+    /// Settings of the recommended pipeline.
+    pub recommended: RecommendedPipeline,
+    /// Settings of the pipeline that fits the samples.
+    pub samples: SamplesPipeline,
+}
+
+/// Number of peaks below which the samples are fitted: four periods.
+const FEW_PEAKS: usize = 8;
+/// Smallest share of a second mode in the power of a record whose peaks mix two modes.
+const SECOND_MODE: f64 = 0.01;
+
+impl EnvelopeSettings {
+    /// Runs a pipeline on a record.
+    ///
+    /// # Errors
+    /// The pipeline's error.
+    pub fn extract(
+        &self,
+        pipeline: Pipeline,
+        record: &Record,
+        clock: &Clock,
+    ) -> Result<Extraction, EnvelopeError> {
+        match pipeline {
+            Pipeline::Auto => chosen(&self.recommended, &self.samples, record, clock),
+            Pipeline::Paper => self.paper.extract(record, clock),
+            Pipeline::Recommended => self.recommended.extract(record, clock),
+            Pipeline::Samples => self.samples.extract(record, clock),
+        }
+    }
+}
+
+/// Extracts the envelope of a record as a configuration does that sets nothing.
+///
+/// # Errors
+/// The pipeline's error.
+pub fn envelope_by_default(record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
+    chosen(&RecommendedPipeline::DEFAULT, &SamplesPipeline::DEFAULT, record, clock)
+}
+
+/// Finds peaks, or fits the samples of a free decay whose peaks are few or mix several modes.
+fn chosen(
+    recommended: &RecommendedPipeline,
+    samples: &SamplesPipeline,
+    record: &Record,
+    clock: &Clock,
+) -> Result<Extraction, EnvelopeError> {
+    let peaks = recommended.extract(record, clock);
+    let Some(because) = unsuited(&peaks, record, clock) else { return peaks };
+    match (samples.extract(record, clock), peaks) {
+        (Ok(samples), _) => Ok(Extraction { because: Some(because), ..samples }),
+        (Err(EnvelopeError::NoSwing), Err(_)) => Err(EnvelopeError::NoSwing),
+        (Err(_), peaks) => peaks,
+    }
+}
+
+/// Returns the reason why peaks do not give the decay of a record, if there is one.
+fn unsuited(peaks: &Result<Extraction, EnvelopeError>, record: &Record, clock: &Clock) -> Option<String> {
+    if record.input().is_some() {
+        return None;
+    }
+    let found = match peaks {
+        Ok(found) => found.envelope.len(),
+        Err(EnvelopeError::TooFewPeaks { found, .. }) => *found,
+        Err(_) => return None,
+    };
+    if found < FEW_PEAKS {
+        let s = if found == 1 { "" } else { "s" };
+        return Some(format!("the record has {found} clear peak{s}, fewer than {FEW_PEAKS}"));
+    }
+    let modes = identify::modes(record, clock);
+    let second = modes.get(1).filter(|mode| mode.share > SECOND_MODE)?;
+    Some(format!(
+        "the record holds {} modes, the second of {:.3} Hz with {:.0} % of the power; they are taken away before",
+        modes.len(),
+        second.frequency_hz.value,
+        100.0 * second.share
+    ))
+}
+
+#[derive(Deserialize)]
+struct PipelineName {
+    pipeline: Pipeline,
+}
+
+/// Reads the section `envelope` of an experiment.
+pub(crate) fn settings(resolved: &Resolved) -> Result<EnvelopeSettings, SettingsError> {
+    let PipelineName { pipeline } = resolved.section("envelope")?;
+    each(resolved, pipeline)
+}
+
+/// Reads the settings of all pipelines; `pipeline` is the one in force.
+pub(crate) fn each(resolved: &Resolved, pipeline: Pipeline) -> Result<EnvelopeSettings, SettingsError> {
+    Ok(EnvelopeSettings {
+        pipeline,
+        paper: resolved.section("envelope.paper")?,
+        recommended: resolved.section("envelope.recommended")?,
+        samples: resolved.section("envelope.samples")?,
+    })
+}

@@ -1,0 +1,326 @@
+//! Envelope of a free decay by least squares on its samples.
+
+use crate::modes::separated;
+use crate::weak;
+use envelope::{Envelope, EnvelopeError, Extraction, RatioDefinition};
+use nalgebra::{Matrix2, Vector2};
+use record::{Clock, Record, median};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Pipeline that needs no peaks: a damped sinusoid is fitted to the samples of each short window.
+///
+/// The record is cut into windows of half a period, or of 1/λ where the decay is faster. In each of them
+/// y(t) = c + e^(−λ(t−t_k))·(a_k·cos ω(t−t_k) + b_k·sin ω(t−t_k)) is fitted by linear least squares, with one rest
+/// position c for all windows; the amplitude at the window's center t_k is √(a_k² + b_k²). The phases of
+/// the windows correct ω and their amplitudes λ, and the windows are fitted again. So each amplitude comes from
+/// its own samples alone, and the decay of the amplitudes need not be exponential. Other modes are
+/// subtracted before ([`modes`](crate::modes)).
+///
+/// It serves records with few samples per period, few cycles, much noise, or several modes. Where peaks are
+/// many and clear, the recommended pipeline assumes less.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SamplesPipeline {
+    /// Length of a window, in periods; windows are shorter where the decay is faster.
+    pub window_periods: f64,
+    /// Smallest amplitude used, in its standard errors.
+    pub floor_in_errors: f64,
+}
+
+impl SamplesPipeline {
+    /// Settings in use if a configuration sets none.
+    pub const DEFAULT: Self = Self { window_periods: 0.5, floor_in_errors: 8.0 };
+}
+
+/// Most rounds of fitting windows and correcting the frequency and the decay.
+const ROUNDS: usize = 20;
+/// Relative change of the frequency and the decay that ends the rounds.
+const SETTLED: f64 = 1e-9;
+/// Fewest windows that give a line and its error.
+const FEWEST_WINDOWS: usize = 3;
+/// Fewest samples of a window, of which two determine its amplitude and phase.
+const FEWEST_SAMPLES: usize = 5;
+/// Smallest part of a window that its samples span.
+const LEAST_SPAN: f64 = 0.6;
+/// Smallest angular frequency of a swing, in decay rates: a damping ratio of 0.96.
+const LEAST_SWING: f64 = 0.3;
+/// Largest decay rate of a mode, in angular frequencies.
+const MOST_OF_A_MODE: f64 = 0.2;
+/// Smallest amplitude in largest ones: no sensor's range is wider, and the rounds end at errors of this size.
+const DYNAMIC_RANGE: f64 = 1e-6;
+/// Residuals of a window, in those of the others and as a part of its amplitude, above which it holds more than a
+/// free swing.
+const FOREIGN: (f64, f64) = (4.0, 0.15);
+
+/// Frequency and decay of a swing, with its samples.
+#[derive(Debug)]
+struct Swing {
+    /// Angular frequency of the damped swing, in rad/s.
+    omega: f64,
+    /// Decay rate of the amplitude, in 1/s.
+    decay: f64,
+    values: Vec<f64>,
+}
+
+/// Damped sinusoid fitted to the samples of a window.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    /// Time of the center, in seconds.
+    time: f64,
+    /// Amplitudes of the cosine and of the sine at the center.
+    parts: (f64, f64),
+    /// Variance of the amplitude for noise of variance 1.
+    leverage: f64,
+    /// Sum of the squared residuals.
+    rest: f64,
+    /// Number of samples.
+    count: usize,
+}
+
+impl Window {
+    fn amplitude(&self) -> f64 {
+        self.parts.0.hypot(self.parts.1)
+    }
+
+    fn scatter(&self) -> f64 {
+        (self.rest / (self.count - 2) as f64).sqrt()
+    }
+}
+
+impl SamplesPipeline {
+    /// Extracts the envelope of a record under a clock. The run time is linear in the number of samples.
+    ///
+    /// # Errors
+    /// [`EnvelopeError::NoSwing`] for a motion that returns to rest without swinging,
+    /// [`EnvelopeError::TooFewPeaks`] for fewer than three windows above the noise.
+    pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
+        let mut swing = Swing::guessed(record, clock)?;
+        let mut found = self.round(&swing, clock)?;
+        for _ in 1..ROUNDS {
+            let before = (swing.omega, swing.decay);
+            swing = swing.corrected(&found.windows)?;
+            if (swing.omega - before.0).hypot(swing.decay - before.1) < SETTLED * swing.omega {
+                break;
+            }
+            found = self.round(&swing, clock)?;
+        }
+        let Swing { omega, .. } = swing.corrected(&found.windows)?;
+        let Found { windows, noise, offset } = found;
+        let first = windows.first().map_or(f64::NAN, |window| window.time);
+        let logarithms = windows.iter().map(|window| window.amplitude().ln()).collect();
+        let errors = windows.iter().map(|window| noise * window.leverage.sqrt() / window.amplitude());
+        Ok(Extraction {
+            pipeline: "samples",
+            because: None,
+            envelope: Envelope::new(windows.iter().map(|window| window.time).collect(), logarithms, omega)?
+                .with_log_std_errors(errors.collect())
+                .with_ratio(RatioDefinition::LogarithmicDecrement),
+            first_peak_s: first - clock.start_s(),
+            period_s: TAU / omega,
+            offset,
+            samples: record.len(),
+        })
+    }
+
+    /// Fits the windows of a swing and keeps those of its free decay.
+    fn round(&self, swing: &Swing, clock: &Clock) -> Result<Found, EnvelopeError> {
+        let enough = (FEWEST_SAMPLES + 1) as f64 / clock.sample_rate_hz;
+        let length_s = (self.window_periods * TAU / swing.omega).min(1.0 / swing.decay.max(0.0)).max(enough);
+        let (windows, offset) = swing.windows(&clock.times_s, length_s);
+        // Without windows there is no decay, whatever the noise.
+        let noise = median(windows.iter().map(Window::scatter).collect()).unwrap_or(0.0);
+        let windows = self.free_decay(&windows, noise);
+        if windows.len() < FEWEST_WINDOWS {
+            return Err(EnvelopeError::TooFewPeaks {
+                pipeline: "samples",
+                found: windows.len(),
+                needed: FEWEST_WINDOWS,
+                remedy: format!(
+                    "A swing's amplitude in windows of {length_s:.3} s must stay above {} of its standard errors; give a \
+                     longer record or one with less noise, or lower envelope.samples.floor_in_errors.",
+                    self.floor_in_errors
+                ),
+            });
+        }
+        Ok(Found { windows, noise, offset })
+    }
+
+    /// Returns the windows from the largest amplitude on, up to the first two that the noise hides.
+    fn free_decay(&self, windows: &[Window], noise: f64) -> Vec<Window> {
+        let (of_noise, of_amplitude) = FOREIGN;
+        let own =
+            |window: &&Window| window.scatter() <= (of_noise * noise).max(of_amplitude * window.amplitude());
+        let own: Vec<Window> = windows.iter().filter(own).copied().collect();
+        let largest = own
+            .iter()
+            .enumerate()
+            .max_by(|(_, one), (_, other)| one.amplitude().total_cmp(&other.amplitude()));
+        let start = largest.map_or(own.len(), |(at, _)| at);
+        let top = own.get(start).map_or(f64::NAN, Window::amplitude);
+        let is_clear = |window: &Window| {
+            let noise = self.floor_in_errors * noise * window.leverage.sqrt();
+            window.amplitude() > noise.max(DYNAMIC_RANGE * top)
+        };
+        let decay = own.get(start..).unwrap_or_default();
+        let hidden = decay.windows(2).position(|pair| !pair.iter().any(is_clear));
+        decay.iter().take(hidden.unwrap_or(decay.len())).filter(|window| is_clear(window)).copied().collect()
+    }
+}
+
+/// Windows of a free decay, with the noise of a sample and the rest position.
+#[derive(Debug)]
+struct Found {
+    windows: Vec<Window>,
+    noise: f64,
+    offset: f64,
+}
+
+impl Swing {
+    /// Takes the nearest linear oscillator, or the strongest mode of a record that swings for long enough to show
+    /// modes.
+    fn guessed(record: &Record, clock: &Clock) -> Result<Self, EnvelopeError> {
+        let nearest = weak::oscillator(record, clock).map(|found| {
+            let decay = 0.5 * found.damping.value;
+            ((found.stiffness.value - decay * decay).max(0.0).sqrt(), decay)
+        });
+        // A swing that hardly oscillates looks like a trend beside several modes.
+        let is_slow = nearest.as_ref().map_or(true, |(omega, decay)| *decay < MOST_OF_A_MODE * omega);
+        if let Some((omega, decay, values)) = is_slow.then(|| separated(record, clock)).flatten() {
+            return Ok(Self { omega, decay, values });
+        }
+        let (omega, decay) = nearest.map_err(|error| EnvelopeError::TooFewPeaks {
+            pipeline: "samples",
+            found: 0,
+            needed: FEWEST_WINDOWS,
+            remedy: error.to_string(),
+        })?;
+        Self::underdamped(omega, decay, record.values().to_vec())
+    }
+
+    fn underdamped(omega: f64, decay: f64, values: Vec<f64>) -> Result<Self, EnvelopeError> {
+        if omega > LEAST_SWING * decay.abs() && omega.is_finite() && decay.is_finite() {
+            Ok(Self { omega, decay, values })
+        } else {
+            Err(EnvelopeError::NoSwing)
+        }
+    }
+
+    /// Corrects the frequency by the drift of the windows' phases, and the decay by that of their amplitudes.
+    fn corrected(self, windows: &[Window]) -> Result<Self, EnvelopeError> {
+        let mut turned = 0.0;
+        let mut before: Option<f64> = None;
+        let phases: Vec<f64> = windows
+            .iter()
+            .map(|window| {
+                let (cosine, sine) = window.parts;
+                let phase = sine.atan2(cosine) + self.omega * window.time;
+                let step = before.map_or(0.0, |before| phase - before);
+                before = Some(phase);
+                turned += step - TAU * (step / TAU).round();
+                turned
+            })
+            .collect();
+        let logarithms: Vec<f64> = windows.iter().map(|window| window.amplitude().ln()).collect();
+        let omega = self.omega - slope(windows, &phases);
+        Self::underdamped(omega, -slope(windows, &logarithms), self.values)
+    }
+
+    /// Fits all windows of a length in seconds; returns them with the rest position.
+    fn windows(&self, times: &[f64], length_s: f64) -> (Vec<Window>, f64) {
+        let mut sums = (0.0, 0.0);
+        let mut fits = Vec::new();
+        let mut from = 0;
+        while let Some(&start) = times.get(from) {
+            let to = from
+                + times.get(from..).map_or(0, |rest| rest.partition_point(|time| time - start < length_s));
+            let (own, values) =
+                (times.get(from..to).unwrap_or_default(), self.values.get(from..to).unwrap_or_default());
+            let spanned = own.last().map_or(0.0, |last| last - start);
+            if own.len() >= FEWEST_SAMPLES && spanned >= LEAST_SPAN * length_s {
+                let center = 0.5 * (start + start + spanned);
+                if let Some(sum) = Sums::new(self, own, values, center) {
+                    let (top, bottom) = sum.offset();
+                    sums = (sums.0 + top, sums.1 + bottom);
+                    fits.push(sum);
+                }
+            }
+            from = to.max(from + 1);
+        }
+        let offset = if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 };
+        (fits.iter().map(|sum| sum.window(offset)).collect(), offset)
+    }
+}
+
+/// Sums over the samples of a window, from which amplitudes follow once the rest position is known.
+struct Sums {
+    time: f64,
+    /// Inverse of the normal matrix of cosine and sine.
+    inverse: Matrix2<f64>,
+    /// Products of cosine and sine with 1.
+    ones: Vector2<f64>,
+    /// Products of cosine and sine with the values.
+    products: Vector2<f64>,
+    count: usize,
+    sum: f64,
+    squares: f64,
+}
+
+impl Sums {
+    /// `None` if the samples do not tell cosine and sine apart.
+    fn new(swing: &Swing, times: &[f64], values: &[f64], center: f64) -> Option<Self> {
+        let (mut normal, mut ones, mut products) = (Matrix2::zeros(), Vector2::zeros(), Vector2::zeros());
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for (&time, &value) in times.iter().zip(values) {
+            let (sine, cosine) = (swing.omega * (time - center)).sin_cos();
+            let row = Vector2::new(cosine, sine) * (-swing.decay * (time - center)).exp();
+            normal += row * row.transpose();
+            ones += row;
+            products += row * value;
+            sum += value;
+            squares += value * value;
+        }
+        let inverse = normal.try_inverse()?;
+        Some(Self { time: center, inverse, ones, products, count: times.len(), sum, squares })
+    }
+
+    /// Returns this window's part of the numerator and of the denominator of the rest position.
+    fn offset(&self) -> (f64, f64) {
+        let share = self.ones.transpose() * self.inverse;
+        (self.sum - (share * self.products).x, self.count as f64 - (share * self.ones).x)
+    }
+
+    fn window(&self, offset: f64) -> Window {
+        let products = self.products - self.ones * offset;
+        let parts = self.inverse * products;
+        let squares = self.squares - 2.0 * offset * self.sum + offset * offset * self.count as f64;
+        let direction = parts.normalize();
+        Window {
+            time: self.time,
+            parts: (parts.x, parts.y),
+            leverage: (direction.transpose() * self.inverse * direction).x,
+            // Rounding can make the difference of two nearly equal sums negative.
+            rest: (squares - parts.dot(&products)).max(0.0),
+            count: self.count,
+        }
+    }
+}
+
+/// Returns the slope of values of windows over time, with the weights of their logarithms.
+fn slope(windows: &[Window], values: &[f64]) -> f64 {
+    let weighted = || {
+        windows
+            .iter()
+            .zip(values)
+            .map(|(window, value)| (window.amplitude().powi(2) / window.leverage, window.time, *value))
+    };
+    let total: f64 = weighted().map(|(weight, ..)| weight).sum();
+    let time = weighted().map(|(weight, time, _)| weight * time).sum::<f64>() / total;
+    let mean = weighted().map(|(weight, _, value)| weight * value).sum::<f64>() / total;
+    let squares: f64 = weighted().map(|(weight, at, _)| weight * (at - time).powi(2)).sum();
+    weighted().map(|(weight, at, value)| weight * (at - time) * (value - mean)).sum::<f64>() / squares
+}
+
+#[cfg(test)]
+#[path = "samples_pipeline_tests.rs"]
+mod tests;
