@@ -134,6 +134,18 @@ mod tests {
         assert!((told - 0.1).abs() < 1e-3, "{told}");
     }
 
+    /// A command is kept between its samples, a measured force is not.
+    #[test]
+    fn an_input_is_read_as_it_is_held() {
+        // Steps of 0.1 s, which begin at samples.
+        let steps = |time: f64| ((time * 10.0 + 1e-6).floor() * 2.399).sin();
+        let smooth = |time: f64| (time * (3.0 + 0.8 * time)).sin();
+        for input in [steps as fn(f64) -> f64, smooth] {
+            let ratio = found(&record(0.1, 1e-4, Some(input), 2)).damping_ratio().unwrap();
+            assert!((ratio.value - 0.1).abs() < 4.0 * ratio.std_error + 5e-4, "{ratio:?}");
+        }
+    }
+
     #[test]
     fn what_does_not_move_is_refused() {
         let record =

@@ -30,36 +30,56 @@ const GAP: f64 = 4.0;
 const SIGNIFICANT: f64 = 3.0;
 
 /// Fits damping, stiffness, input gain and rest position to all windows of a record.
+///
+/// An input may be kept between its samples or vary linearly. Half a sampling interval lies between the two, which
+/// would be taken for damping; the one that leaves less is believed.
 pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Result<LinearOscillator, IdentifyError> {
-    let samples = Samples::new(record, clock);
-    let width = samples.period().min(samples.duration() / 4.0);
-    let rows = samples.rows(width);
-    let columns = if samples.input.is_some() { 4 } else { 3 };
-    let needed = WINDOWS_EACH * columns;
-    if rows.len() < needed {
-        return Err(IdentifyError::TooShort { windows: rows.len(), needed, width_s: width });
+    let linear = Samples::new(record, clock);
+    let kept = linear.kept().map(|samples| samples.oscillator());
+    match (linear.oscillator(), kept) {
+        (Ok(linear), Some(Ok(kept))) => Ok(if kept.rest < linear.rest { kept } else { linear }.oscillator),
+        (linear, _) => linear.map(|found| found.oscillator),
     }
-    let with_spring = fit(&rows, columns, true)?;
-    let [damping, stiffness, shift, gain] = with_spring;
-    let restored = stiffness.value > SIGNIFICANT * stiffness.std_error;
-    let [damping, stiffness, shift, gain] =
-        if restored { [damping, stiffness, shift, gain] } else { fit(&rows, columns, false)? };
-    let rest = (restored && samples.order == 0).then(|| shift.times(1.0 / stiffness.value));
-    Ok(LinearOscillator {
-        stiffness,
-        damping,
-        rest,
-        input_gain: samples.input.is_some().then_some(gain),
-        basis: Basis::Windows(rows.len()),
-    })
+}
+
+/// Oscillator with the sum of the squared residuals of its windows.
+struct Found {
+    oscillator: LinearOscillator,
+    rest: f64,
+}
+
+impl Samples<'_> {
+    fn oscillator(&self) -> Result<Found, IdentifyError> {
+        let width = self.period().min(self.duration() / 4.0);
+        let rows = self.rows(width);
+        let columns = if self.input.is_some() { 4 } else { 3 };
+        let needed = WINDOWS_EACH * columns;
+        if rows.len() < needed {
+            return Err(IdentifyError::TooShort { windows: rows.len(), needed, width_s: width });
+        }
+        let with_spring = fit(&rows, columns, true)?;
+        let [_, stiffness, ..] = with_spring.0;
+        let restored = stiffness.value > SIGNIFICANT * stiffness.std_error;
+        let ([damping, stiffness, shift, gain], rest) =
+            if restored { with_spring } else { fit(&rows, columns, false)? };
+        let center = (restored && self.order == 0).then(|| shift.times(1.0 / stiffness.value));
+        let oscillator = LinearOscillator {
+            stiffness,
+            damping,
+            rest: center,
+            input_gain: self.input.is_some().then_some(gain),
+            basis: Basis::Windows(rows.len()),
+        };
+        Ok(Found { oscillator, rest })
+    }
 }
 
 /// One window's equation: ∫φ″·θ, then ∫φ′·θ, −∫φ·θ, ∫φ and the integral of the input.
 type Row = (f64, [f64; 4]);
 
 /// Fits damping, stiffness, shift and gain by least squares, each with its standard error; 0 for those not
-/// fitted.
-fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], IdentifyError> {
+/// fitted. The second number is the sum of the squared residuals.
+fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<([Estimated; 4], f64), IdentifyError> {
     debug_assert!(columns <= 4, "{columns} columns of 4");
     let free: Vec<usize> = (0..columns).filter(|column| spring || *column != 1).collect();
     let entries =
@@ -78,8 +98,9 @@ fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], Ide
     let inverse = normal.try_inverse().ok_or(IdentifyError::Undetermined)?;
     let solution = &inverse * design.tr_mul(&target);
     let freedom = (rows.len().saturating_sub(free.len())).max(1) as f64;
+    let rest = (&target - &design * &solution).norm_squared();
     // Windows overlap by three quarters, so that four neighbors count for little more than one.
-    let variance = 4.0 * (&target - &design * &solution).norm_squared() / freedom;
+    let variance = 4.0 * rest / freedom;
     let mut found = [Estimated { value: 0.0, std_error: 0.0 }; 4];
     for (number, (column, size)) in free.iter().zip(&sizes).enumerate() {
         let value = solution.get(number).copied().unwrap_or(f64::NAN) / size;
@@ -91,10 +112,11 @@ fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], Ide
             *place = Estimated { value, std_error };
         }
     }
-    Ok(found)
+    Ok((found, rest))
 }
 
 /// Columns of a record in the form that the windows need.
+#[derive(Clone)]
 struct Samples<'a> {
     times: &'a [f64],
     /// Observed values minus their mean; only the shift depends on the mean.
@@ -119,6 +141,17 @@ impl<'a> Samples<'a> {
             order: order(record.quantity()),
             step: 1.0 / clock.sample_rate_hz,
         }
+    }
+
+    /// Returns the samples with an input that is kept from each of its samples to the next; `None` without an input.
+    fn kept(&self) -> Option<Self> {
+        let input = self.input.as_ref()?;
+        let before = input.iter().take(1).chain(input);
+        // The trapezoidal rule weighs a sample by half of both intervals beside it, which a kept input fills with two
+        // values.
+        let mean = |(now, before): (&(f64, f64), &(f64, f64))| (now.0, 0.5 * (now.1 + before.1));
+        let input = input.iter().zip(before).map(mean).collect();
+        Some(Self { input: Some(input), ..self.clone() })
     }
 
     fn duration(&self) -> f64 {

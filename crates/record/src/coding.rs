@@ -56,7 +56,10 @@ fn largest_step(values: &[f64]) -> f64 {
 fn periods(unit: Option<Unit>, whole: bool) -> Vec<f64> {
     let counts = || BITS.map(|bits| f64::from(bits).exp2());
     match unit {
-        Some(unit) if unit.dimension() == Dimension::Angle && unit.order() == 0 => vec![TAU / unit.to_si()],
+        // Whole numbers may be counts, whatever unit they are read in.
+        Some(unit) if unit.dimension() == Dimension::Angle && unit.order() == 0 => {
+            std::iter::once(TAU / unit.to_si()).chain(counts().filter(|_| whole)).collect()
+        }
         Some(_) => Vec::new(),
         None if whole => std::iter::once(360.0).chain(counts()).collect(),
         None => vec![360.0, TAU, 1.0],
@@ -124,7 +127,9 @@ mod tests {
             let turn = f64::from(bits).exp2();
             let counts: Vec<f64> = swing(0.04 * turn, 0.2 * turn).iter().map(|value| value.round()).collect();
             let wrapped: Vec<f64> = counts.iter().map(|value| value.rem_euclid(turn)).collect();
-            assert!(off(&decoded(&wrapped, None).unwrap().values, &counts) < 1e-9, "{bits}");
+            for unit in [None, Some(Unit::Radian)] {
+                assert!(off(&decoded(&wrapped, unit).unwrap().values, &counts) < 1e-9, "{bits}");
+            }
             let signs: Vec<f64> =
                 counts.iter().map(|value| if *value < 0.0 { 0.5 * turn - value } else { *value }).collect();
             assert!(off(&decoded(&signs, None).unwrap().values, &counts) < 1e-9, "{bits}");
