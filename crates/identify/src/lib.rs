@@ -2,9 +2,9 @@
 //! yet.
 //!
 //! Per unit of inertia, θ̈ + 2ζω₀·θ̇ + ω₀²·(θ − θ_rest) = g·u(t). A free decay is identified from its turning
-//! points (`decay`), which determine the damping best. A record with an input, or with too few turning
-//! points, is identified by a regression in weak form (`weak`), which differentiates smooth windows instead
-//! of noisy samples.
+//! points (`decay`), which assume least, or from damped sinusoids fitted to its samples (`samples_pipeline`) where those
+//! tell the damping much better. A record with an input, or without a swing, is identified by a regression in weak
+//! form (`weak`), which differentiates smooth windows instead of noisy samples.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -35,11 +35,32 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
     if values.windows(2).all(|pair| pair.first() == pair.last()) {
         return Err(IdentifyError::NoMotion { samples: values.len() });
     }
-    let free = if input(record, clock).is_none() { decay::oscillator(record, clock) } else { None };
-    match free {
-        Some(oscillator) => Ok(oscillator),
-        None => weak::oscillator(record, clock),
+    let free = input(record, clock).is_none();
+    let peaks = if free { decay::oscillator(record, clock) } else { None };
+    let samples = if free && !peaks.as_ref().is_some_and(is_well_known) {
+        SamplesPipeline::DEFAULT.oscillator(record, clock).ok()
+    } else {
+        None
+    };
+    match (peaks, samples) {
+        (Some(peaks), Some(samples)) if peaks.damping.std_error < TIGHTER * samples.damping.std_error => {
+            Ok(peaks)
+        }
+        (_, Some(samples)) => Ok(samples),
+        (Some(peaks), None) => Ok(peaks),
+        (None, None) => weak::oscillator(record, clock),
     }
+}
+
+/// Standard errors of a damping ratio, relative and absolute, below which turning points need no help.
+const WELL_KNOWN: (f64, f64) = (0.05, 1e-4);
+/// Ratio of standard errors from which on the samples are believed and not the turning points.
+const TIGHTER: f64 = 2.0;
+
+/// Returns `true` if turning points tell the damping ratio well.
+fn is_well_known(found: &LinearOscillator) -> bool {
+    let (relative, absolute) = WELL_KNOWN;
+    found.damping_ratio().is_some_and(|ratio| ratio.std_error < (relative * ratio.value).max(absolute))
 }
 
 #[cfg(test)]

@@ -89,16 +89,29 @@ pub fn modes(record: &Record, clock: &Clock) -> Vec<Mode> {
         .unwrap_or_default()
 }
 
-/// Returns the angular frequency in rad/s and the decay in 1/s of the strongest mode of a free decay, with the
-/// record's values minus a slow trend and all other modes; `None` without a clear mode.
-pub(crate) fn separated(record: &Record, clock: &Clock) -> Option<(f64, f64, Vec<f64>)> {
+/// Strongest mode of a free decay, alone.
+pub(crate) struct Separated {
+    /// Angular frequency of the damped swing, in rad/s.
+    pub(crate) omega: f64,
+    /// Decay rate of the amplitude, in 1/s.
+    pub(crate) decay: f64,
+    /// Values of the record minus a slow trend and all other modes.
+    pub(crate) values: Vec<f64>,
+}
+
+/// Returns the strongest mode of a free decay; `None` without a clear mode.
+pub(crate) fn separated(record: &Record, clock: &Clock) -> Option<Separated> {
     let samples = Samples::new(record, clock)?;
     let fit = samples.fitted()?;
     let lines = fit.lines.iter().enumerate();
     let (number, strongest) = lines.max_by(|(_, one), (_, other)| one.energy.total_cmp(&other.energy))?;
     let values = fit.residuals(&samples, &[number]).into_iter().map(|value| samples.size * value);
     let Line { omega, decay } = strongest.line;
-    Some((omega / samples.duration_s, decay / samples.duration_s, values.collect()))
+    Some(Separated {
+        omega: omega / samples.duration_s,
+        decay: decay / samples.duration_s,
+        values: values.collect(),
+    })
 }
 
 impl Samples {

@@ -30,6 +30,8 @@ pub struct LinearOscillator {
 pub enum Basis {
     /// Turning points of a free decay: their number.
     TurningPoints(usize),
+    /// Damped sinusoids fitted to the samples of windows: their number.
+    Samples(usize),
     /// Regression over smooth windows: their number.
     Windows(usize),
     /// The strongest of several modes: their number.

@@ -1,7 +1,8 @@
 //! Envelope of a free decay by least squares on its samples.
 
-use crate::modes::separated;
-use crate::weak;
+use crate::modes::{Separated, separated};
+use crate::observed::order;
+use crate::{Basis, Estimated, LinearOscillator, weak};
 use envelope::{Envelope, EnvelopeError, Extraction, RatioDefinition};
 use nalgebra::{Matrix2, Vector2};
 use record::{Clock, Record, median};
@@ -45,6 +46,10 @@ const FEWEST_SAMPLES: usize = 5;
 const LEAST_SPAN: f64 = 0.6;
 /// Smallest angular frequency of a swing, in decay rates: a damping ratio of 0.96.
 const LEAST_SWING: f64 = 0.3;
+/// Samples per period that a regression over windows needs.
+const MANY_PER_PERIOD: f64 = 12.0;
+/// Longest window, in records.
+const LONGEST: f64 = 0.15;
 /// Largest decay rate of a mode, in angular frequencies.
 const MOST_OF_A_MODE: f64 = 0.2;
 /// Smallest amplitude in largest ones: no sensor's range is wider, and the rounds end at errors of this size.
@@ -54,7 +59,7 @@ const DYNAMIC_RANGE: f64 = 1e-6;
 const FOREIGN: (f64, f64) = (4.0, 0.15);
 
 /// Frequency and decay of a swing, with its samples.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Swing {
     /// Angular frequency of the damped swing, in rad/s.
     omega: f64,
@@ -95,38 +100,89 @@ impl SamplesPipeline {
     /// [`EnvelopeError::NoSwing`] for a motion that returns to rest without swinging,
     /// [`EnvelopeError::TooFewPeaks`] for fewer than three windows above the noise.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
-        let mut swing = Swing::guessed(record, clock)?;
-        let mut found = self.round(&swing, clock)?;
-        for _ in 1..ROUNDS {
-            let before = (swing.omega, swing.decay);
-            swing = swing.corrected(&found.windows)?;
-            if (swing.omega - before.0).hypot(swing.decay - before.1) < SETTLED * swing.omega {
-                break;
-            }
-            found = self.round(&swing, clock)?;
-        }
-        let Swing { omega, .. } = swing.corrected(&found.windows)?;
-        let Found { windows, noise, offset } = found;
+        let (swing, Found { windows, noise, offset }) = self.fitted(record, clock)?;
         let first = windows.first().map_or(f64::NAN, |window| window.time);
         let logarithms = windows.iter().map(|window| window.amplitude().ln()).collect();
         let errors = windows.iter().map(|window| noise * window.leverage.sqrt() / window.amplitude());
         Ok(Extraction {
             pipeline: "samples",
             because: None,
-            envelope: Envelope::new(windows.iter().map(|window| window.time).collect(), logarithms, omega)?
-                .with_log_std_errors(errors.collect())
-                .with_ratio(RatioDefinition::LogarithmicDecrement),
+            envelope: Envelope::new(
+                windows.iter().map(|window| window.time).collect(),
+                logarithms,
+                swing.omega,
+            )?
+            .with_log_std_errors(errors.collect())
+            .with_ratio(RatioDefinition::LogarithmicDecrement),
             first_peak_s: first - clock.start_s(),
-            period_s: TAU / omega,
+            period_s: TAU / swing.omega,
             offset,
             samples: record.len(),
         })
     }
 
+    /// Returns the oscillator whose decay has the amplitudes and the phases of the windows.
+    pub(crate) fn oscillator(
+        &self,
+        record: &Record,
+        clock: &Clock,
+    ) -> Result<LinearOscillator, EnvelopeError> {
+        let (swing, Found { windows, noise, offset }) = self.fitted(record, clock)?;
+        let [omega, decay] = swing.drifts(&windows, noise);
+        let (omega, decay) =
+            (Estimated { value: swing.omega, ..omega }, Estimated { value: swing.decay, ..decay });
+        let weights: f64 = windows.iter().map(|window| window.count as f64).sum();
+        Ok(LinearOscillator {
+            stiffness: Estimated {
+                value: omega.value.powi(2) + decay.value.powi(2),
+                std_error: 2.0 * (omega.value * omega.std_error).hypot(decay.value * decay.std_error),
+            },
+            damping: decay.times(2.0),
+            rest: (order(record.quantity()) == 0)
+                .then(|| Estimated { value: offset, std_error: noise / weights.sqrt() }),
+            input_gain: None,
+            basis: Basis::Samples(windows.len()),
+        })
+    }
+
+    /// Fits windows of a free decay, longer ones where the noise hides the swing in short ones.
+    fn fitted(&self, record: &Record, clock: &Clock) -> Result<(Swing, Found), EnvelopeError> {
+        let guess = Swing::guessed(record, clock)?;
+        let mut fitted = self.settled(guess.clone(), self.window_periods, clock);
+        let mut periods = self.window_periods;
+        while matches!(fitted, Err(EnvelopeError::TooFewPeaks { .. })) {
+            periods *= 2.0;
+            if periods * TAU / guess.omega > LONGEST * guess.duration_s(clock) {
+                break;
+            }
+            fitted = self.settled(guess.clone(), periods, clock).or(fitted);
+        }
+        fitted
+    }
+
+    /// Fits windows of a length in periods and corrects the swing by them until it settles.
+    fn settled(
+        &self,
+        mut swing: Swing,
+        periods: f64,
+        clock: &Clock,
+    ) -> Result<(Swing, Found), EnvelopeError> {
+        for _ in 0..ROUNDS {
+            let found = self.round(&swing, periods, clock)?;
+            let before = (swing.omega, swing.decay);
+            swing = swing.corrected(&found)?;
+            if (swing.omega - before.0).hypot(swing.decay - before.1) < SETTLED * swing.omega {
+                return Ok((swing, found));
+            }
+        }
+        let found = self.round(&swing, periods, clock)?;
+        Ok((swing, found))
+    }
+
     /// Fits the windows of a swing and keeps those of its free decay.
-    fn round(&self, swing: &Swing, clock: &Clock) -> Result<Found, EnvelopeError> {
+    fn round(&self, swing: &Swing, periods: f64, clock: &Clock) -> Result<Found, EnvelopeError> {
         let enough = (FEWEST_SAMPLES + 1) as f64 / clock.sample_rate_hz;
-        let length_s = (self.window_periods * TAU / swing.omega).min(1.0 / swing.decay.max(0.0)).max(enough);
+        let length_s = (periods * TAU / swing.omega).min(1.0 / swing.decay.max(0.0)).max(enough);
         let (windows, offset) = swing.windows(&clock.times_s, length_s);
         // Without windows there is no decay, whatever the noise.
         let noise = median(windows.iter().map(Window::scatter).collect()).unwrap_or(0.0);
@@ -181,12 +237,17 @@ impl Swing {
     /// modes.
     fn guessed(record: &Record, clock: &Clock) -> Result<Self, EnvelopeError> {
         let nearest = weak::oscillator(record, clock).map(|found| {
-            let decay = 0.5 * found.damping.value;
-            ((found.stiffness.value - decay * decay).max(0.0).sqrt(), decay)
+            let decay = found.damping.times(0.5);
+            ((found.stiffness.value - decay.value * decay.value).max(0.0).sqrt(), decay)
         });
-        // A swing that hardly oscillates looks like a trend beside several modes.
-        let is_slow = nearest.as_ref().map_or(true, |(omega, decay)| *decay < MOST_OF_A_MODE * omega);
-        if let Some((omega, decay, values)) = is_slow.then(|| separated(record, clock)).flatten() {
+        // A swing that hardly oscillates looks like a trend beside several modes. The regression needs many samples of
+        // each period to say so.
+        let is_strong = nearest.as_ref().is_ok_and(|(omega, decay)| {
+            decay.value - 3.0 * decay.std_error > MOST_OF_A_MODE * omega
+                && TAU * clock.sample_rate_hz > MANY_PER_PERIOD * omega
+        });
+        let mode = if is_strong { None } else { separated(record, clock) };
+        if let Some(Separated { omega, decay, values }) = mode {
             return Ok(Self { omega, decay, values });
         }
         let (omega, decay) = nearest.map_err(|error| EnvelopeError::TooFewPeaks {
@@ -195,7 +256,7 @@ impl Swing {
             needed: FEWEST_WINDOWS,
             remedy: error.to_string(),
         })?;
-        Self::underdamped(omega, decay, record.values().to_vec())
+        Self::underdamped(omega, decay.value, record.values().to_vec())
     }
 
     fn underdamped(omega: f64, decay: f64, values: Vec<f64>) -> Result<Self, EnvelopeError> {
@@ -206,24 +267,34 @@ impl Swing {
         }
     }
 
+    fn duration_s(&self, clock: &Clock) -> f64 {
+        // A clock without times has no duration.
+        clock.times_s.last().map_or(0.0, |last| last - clock.start_s())
+    }
+
     /// Corrects the frequency by the drift of the windows' phases, and the decay by that of their amplitudes.
-    fn corrected(self, windows: &[Window]) -> Result<Self, EnvelopeError> {
+    fn corrected(self, found: &Found) -> Result<Self, EnvelopeError> {
+        let [omega, decay] = self.drifts(&found.windows, found.noise);
+        Self::underdamped(self.omega - omega.value, decay.value, self.values)
+    }
+
+    /// Returns the drifts of the windows' phases from those of the swing and of the logarithms of their amplitudes
+    /// downward, in 1/s.
+    fn drifts(&self, windows: &[Window], noise: f64) -> [Estimated; 2] {
         let mut turned = 0.0;
         let mut before: Option<f64> = None;
-        let phases: Vec<f64> = windows
-            .iter()
-            .map(|window| {
-                let (cosine, sine) = window.parts;
-                let phase = sine.atan2(cosine) + self.omega * window.time;
-                let step = before.map_or(0.0, |before| phase - before);
-                before = Some(phase);
-                turned += step - TAU * (step / TAU).round();
-                turned
-            })
-            .collect();
-        let logarithms: Vec<f64> = windows.iter().map(|window| window.amplitude().ln()).collect();
-        let omega = self.omega - slope(windows, &phases);
-        Self::underdamped(omega, -slope(windows, &logarithms), self.values)
+        let phases = windows.iter().map(|window| {
+            let (cosine, sine) = window.parts;
+            let phase = sine.atan2(cosine) + self.omega * window.time;
+            // The first window turns by nothing.
+            let step = before.map_or(0.0, |before| phase - before);
+            before = Some(phase);
+            turned += step - TAU * (step / TAU).round();
+            turned
+        });
+        let phases: Vec<f64> = phases.collect();
+        let logarithms: Vec<f64> = windows.iter().map(|window| -window.amplitude().ln()).collect();
+        [slope(windows, &phases, noise), slope(windows, &logarithms, noise)]
     }
 
     /// Fits all windows of a length in seconds; returns them with the rest position.
@@ -306,8 +377,9 @@ impl Sums {
     }
 }
 
-/// Returns the slope of values of windows over time, with the weights of their logarithms.
-fn slope(windows: &[Window], values: &[f64]) -> f64 {
+/// Returns the slope of values of windows over time, with the weights that noise gives to phases and to logarithms
+/// of amplitudes. Its standard error is that of the noise, or of the scatter about the line if that is larger.
+fn slope(windows: &[Window], values: &[f64], noise: f64) -> Estimated {
     let weighted = || {
         windows
             .iter()
@@ -318,7 +390,12 @@ fn slope(windows: &[Window], values: &[f64]) -> f64 {
     let time = weighted().map(|(weight, time, _)| weight * time).sum::<f64>() / total;
     let mean = weighted().map(|(weight, _, value)| weight * value).sum::<f64>() / total;
     let squares: f64 = weighted().map(|(weight, at, _)| weight * (at - time).powi(2)).sum();
-    weighted().map(|(weight, at, value)| weight * (at - time) * (value - mean)).sum::<f64>() / squares
+    let value =
+        weighted().map(|(weight, at, value)| weight * (at - time) * (value - mean)).sum::<f64>() / squares;
+    let rest: f64 =
+        weighted().map(|(weight, at, own)| weight * (own - mean - value * (at - time)).powi(2)).sum();
+    let freedom = windows.len().saturating_sub(2).max(1) as f64;
+    Estimated { value, std_error: (noise.powi(2).max(rest / freedom) / squares).sqrt() }
 }
 
 #[cfg(test)]

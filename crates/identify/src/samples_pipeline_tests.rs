@@ -73,3 +73,17 @@ fn a_motion_without_a_swing_is_said() {
     let creeping = |time: f64| 1.2 * (-2.0 * time).exp() - 0.2 * (-12.0 * time).exp();
     assert_eq!(found(&record(100.0, 5.0, 1e-3, 1, creeping)), Err(EnvelopeError::NoSwing));
 }
+
+/// Noise as large as the swing hides it in windows of half a period, and not in longer ones.
+#[test]
+fn a_faint_swing_is_found_without_bias() {
+    let pulls: Vec<[f64; 2]> = (0..12)
+        .map(|seed| {
+            let record = record(200.0, 20.0, 1.0, seed, decay(0.003));
+            let found = crate::identify(&record, &Clock::new(&record, ClockChoice::Auto).unwrap()).unwrap();
+            let (frequency, ratio) = (found.natural_frequency_hz().unwrap(), found.damping_ratio().unwrap());
+            [(frequency.value - 1.0) / frequency.std_error, (ratio.value - 0.003) / ratio.std_error]
+        })
+        .collect();
+    assert!(pulls.iter().flatten().filter(|pull| pull.abs() > 3.0).count() <= 1, "{pulls:?}");
+}

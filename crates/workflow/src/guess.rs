@@ -100,11 +100,12 @@ pub fn name(coordinate: Coordinate) -> &'static str {
     }
 }
 
-/// Describes the basis of the guess in words: turning points or windows.
+/// Describes the basis of the guess in words.
 #[must_use]
 pub fn basis(oscillator: &LinearOscillator) -> String {
     match oscillator.basis {
         Basis::TurningPoints(count) => format!("from {count} turning points of a free decay"),
+        Basis::Samples(count) => format!("from damped sinusoids fitted to the samples of {count} windows"),
         Basis::Windows(count) => format!("by regression over {count} windows of the record"),
         Basis::Modes(count) => format!("of the strongest of {count} modes"),
     }
