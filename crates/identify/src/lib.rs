@@ -3,8 +3,9 @@
 //!
 //! Per unit of inertia, θ̈ + 2ζω₀·θ̇ + ω₀²·(θ − θ_rest) = g·u(t). A free decay is identified from its turning
 //! points (`decay`), which assume least, or from damped sinusoids fitted to its samples (`samples_pipeline`) where those
-//! tell the damping much better. A record with an input, or without a swing, is identified by a regression in weak
-//! form (`weak`), which differentiates smooth windows instead of noisy samples.
+//! tell the damping much better. A record with an input, or without a swing, is identified by the simulated response
+//! that is nearest to it (`response`), from a regression in weak form (`weak`), which also serves where nothing pulls
+//! the system back.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -13,6 +14,7 @@ mod error;
 mod modes;
 mod observed;
 mod oscillator;
+mod response;
 mod samples_pipeline;
 mod weak;
 
@@ -48,7 +50,13 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
         }
         (_, Some(samples)) => Ok(samples),
         (Some(peaks), None) => Ok(peaks),
-        (None, None) => weak::oscillator(record, clock),
+        (None, None) if free => {
+            response::creeping(record, clock).map_or_else(|| weak::oscillator(record, clock), Ok)
+        }
+        (None, None) => {
+            let guess = weak::oscillator(record, clock)?;
+            Ok(response::driven(record, clock, &guess).unwrap_or(guess))
+        }
     }
 }
 
@@ -121,7 +129,7 @@ mod tests {
         let sweep = |time: f64| (time * (3.0 + 0.8 * time)).sin();
         for seed in 0..5 {
             let found = found(&record(0.05, 1e-4, Some(sweep), seed));
-            assert!(matches!(found.basis, Basis::Windows(_)));
+            assert!(matches!(found.basis, Basis::Response(_)));
             let (frequency, ratio) = (found.natural_frequency_hz().unwrap(), found.damping_ratio().unwrap());
             assert!((frequency.value - 2.0).abs() < 0.01, "{frequency:?}");
             assert!((ratio.value - 0.05).abs() < 4.0 * ratio.std_error + 1e-3, "{ratio:?}");

@@ -32,6 +32,8 @@ pub enum Basis {
     TurningPoints(usize),
     /// Damped sinusoids fitted to the samples of windows: their number.
     Samples(usize),
+    /// Simulated response nearest to the samples: their number.
+    Response(usize),
     /// Regression over smooth windows: their number.
     Windows(usize),
     /// The strongest of several modes: their number.

@@ -106,6 +106,7 @@ pub fn basis(oscillator: &LinearOscillator) -> String {
     match oscillator.basis {
         Basis::TurningPoints(count) => format!("from {count} turning points of a free decay"),
         Basis::Samples(count) => format!("from damped sinusoids fitted to the samples of {count} windows"),
+        Basis::Response(count) => format!("from the simulated response nearest to {count} samples"),
         Basis::Windows(count) => format!("by regression over {count} windows of the record"),
         Basis::Modes(count) => format!("of the strongest of {count} modes"),
     }

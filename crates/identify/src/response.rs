@@ -1,0 +1,303 @@
+//! Linear oscillator whose simulated response is nearest to a record: least squares on the samples
+//! (output-error method; Ljung, System Identification, 1999, chapter 4).
+//!
+//! ẍ = −c·ẋ − k·x + g·u(t) + b from x₀, v₀, integrated together with its derivatives with respect to the six
+//! numbers. A regression over windows gives the first guess; it weighs the noise less well, since it differentiates.
+
+use crate::observed::{input, order};
+use crate::{Basis, Estimated, LinearOscillator};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use record::{Clock, Record};
+
+/// Numbers that are fitted: stiffness, damping, input gain, shift, first position and first velocity.
+const COUNT: usize = 6;
+/// The fitted numbers, or their derivatives.
+type Numbers = SVector<f64, COUNT>;
+/// Places of the numbers; the first position and velocity begin at the last.
+const STIFFNESS: usize = 0;
+const DAMPING: usize = 1;
+const GAIN: usize = 2;
+const SHIFT: usize = 3;
+const START: usize = 4;
+/// Most steps of the fit.
+const STEPS: usize = 40;
+/// Relative gain of a step that ends the fit.
+const SETTLED: f64 = 1e-10;
+/// Longest integration step, in radians of the natural frequency or of the damping.
+const LONGEST: f64 = 0.15;
+/// Most integration steps between two samples.
+const MOST_STEPS: f64 = 200.0;
+/// Smallest stiffness that counts as a restoring torque, in its standard errors.
+const SIGNIFICANT: f64 = 3.0;
+/// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
+/// of 1.
+const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
+
+/// Refines an oscillator that is driven by an input. `None` if it has no spring, or if the fit ends nowhere.
+pub(crate) fn driven(record: &Record, clock: &Clock, guess: &LinearOscillator) -> Option<LinearOscillator> {
+    let pushes = input(record, clock)?;
+    let start = [guess.stiffness.value, guess.damping.value.max(0.0)];
+    let fits = [true, false].map(|kept| Problem::new(record, clock, &pushes, kept).fitted(start));
+    nearest(fits.into_iter().flatten())
+}
+
+/// Fits a motion that returns to rest without a swing. `None` if nothing pulls it back.
+pub(crate) fn creeping(record: &Record, clock: &Clock) -> Option<LinearOscillator> {
+    let problem = Problem::new(record, clock, &[], false);
+    let duration_s = clock.times_s.last()? - clock.start_s();
+    let fits = CREEPING.iter().filter_map(|omega| {
+        let omega = omega / duration_s;
+        problem.fitted([omega * omega, 2.0 * omega])
+    });
+    nearest(fits)
+}
+
+/// Returns the oscillator with the smallest residuals if a spring pulls it back.
+fn nearest(fits: impl Iterator<Item = (f64, LinearOscillator)>) -> Option<LinearOscillator> {
+    let (_, found) = fits.min_by(|(one, _), (other, _)| one.total_cmp(other))?;
+    (found.stiffness.value > SIGNIFICANT * found.stiffness.std_error).then_some(found)
+}
+
+/// Time from which the input changes at a constant rate.
+struct Knot {
+    time: f64,
+    push: f64,
+    rate: f64,
+    /// Sample at this time.
+    value: Option<f64>,
+}
+
+/// Samples and input of a record.
+struct Problem {
+    knots: Vec<Knot>,
+    samples: usize,
+    is_driven: bool,
+    /// Number of time derivatives that the observed quantity already has.
+    order: usize,
+}
+
+/// Sums of a simulation over the samples.
+struct Sums {
+    normal: SMatrix<f64, COUNT, COUNT>,
+    slope: Numbers,
+    /// Sum of the squared residuals.
+    rest: f64,
+    /// Sum of the products of neighboring residuals.
+    next: f64,
+}
+
+/// Position and velocity, and their derivatives with respect to each of the numbers.
+type State = SMatrix<f64, 2, { COUNT + 1 }>;
+
+impl Problem {
+    fn new(record: &Record, clock: &Clock, pushes: &[(f64, f64)], kept: bool) -> Self {
+        let samples: Vec<(f64, f64)> =
+            clock.times_s.iter().copied().zip(record.values().iter().copied()).collect();
+        let at: Vec<(f64, f64)> = if pushes.is_empty() {
+            samples.iter().map(|(time, _)| (*time, 0.0)).collect()
+        } else {
+            pushes.to_vec()
+        };
+        let mut rest = samples.iter().peekable();
+        let mut knots: Vec<Knot> = Vec::with_capacity(at.len());
+        for (index, &(time, push)) in at.iter().enumerate() {
+            let rate = at.get(index + 1).filter(|next| !kept && next.0 > time).map_or(0.0, |next| {
+                // The last input has no next one, and stays.
+                (next.1 - push) / (next.0 - time)
+            });
+            let value = rest.next_if(|sample| sample.0 <= time).map(|sample| sample.1);
+            knots.push(Knot { time, push, rate, value });
+        }
+        Self { knots, samples: samples.len(), is_driven: !pushes.is_empty(), order: order(record.quantity()) }
+    }
+
+    /// Fits all numbers from a stiffness and a damping; returns the sum of the squared residuals, and the oscillator.
+    fn fitted(&self, [stiffness, damping]: [f64; 2]) -> Option<(f64, LinearOscillator)> {
+        let mut numbers = Numbers::zeros();
+        (numbers[STIFFNESS], numbers[DAMPING]) = (stiffness, damping);
+        let mut sums = self.sums(&numbers)?;
+        let mut lambda = 1e-6;
+        for _ in 0..STEPS {
+            let next = self.step(&sums, lambda).map(|step| numbers + step);
+            match next.and_then(|next| Some((next, self.sums(&next)?))) {
+                Some((next, found)) if found.rest < sums.rest => {
+                    let gain = 1.0 - found.rest / sums.rest;
+                    (numbers, sums, lambda) = (next, found, 0.1 * lambda);
+                    if gain < SETTLED {
+                        break;
+                    }
+                }
+                _ if lambda > 1e6 => break,
+                _ => lambda *= 10.0,
+            }
+        }
+        Some((sums.rest, self.oscillator(&numbers, &sums)?))
+    }
+
+    /// Returns the numbers that the record determines.
+    fn free(&self) -> Vec<usize> {
+        (0..COUNT).filter(|number| *number != GAIN || self.is_driven).collect()
+    }
+
+    /// Returns the step of the method of Levenberg and Marquardt. A system at rest, as the fit begins, moves by the
+    /// other numbers first.
+    fn step(&self, sums: &Sums, lambda: f64) -> Option<Numbers> {
+        let mut free = self.free();
+        free.retain(|at| sums.normal.get((*at, *at)).is_some_and(|size| *size > 0.0));
+        let mut normal = self.normal(sums, &free)?;
+        for at in 0..free.len() {
+            *normal.get_mut((at, at))? *= 1.0 + lambda;
+        }
+        let slope =
+            DVector::from_iterator(free.len(), free.iter().filter_map(|at| sums.slope.get(*at).copied()));
+        let scale = normal.diagonal().map(f64::sqrt);
+        let scaled = normal.component_div(&(&scale * scale.transpose()));
+        let solution = scaled.cholesky()?.solve(&slope.component_div(&scale)).component_div(&scale);
+        let mut step = Numbers::zeros();
+        for (at, value) in free.iter().zip(solution.iter()) {
+            *step.get_mut(*at)? = *value;
+        }
+        Some(step)
+    }
+
+    fn normal(&self, sums: &Sums, free: &[usize]) -> Option<DMatrix<f64>> {
+        let entries =
+            free.iter().flat_map(|row| free.iter().map(|column| sums.normal.get((*row, *column)).copied()));
+        let entries = entries.collect::<Option<Vec<f64>>>()?;
+        Some(DMatrix::from_row_slice(free.len(), free.len(), &entries))
+    }
+
+    fn oscillator(&self, numbers: &Numbers, sums: &Sums) -> Option<LinearOscillator> {
+        let free = self.free();
+        let freedom = self.samples.checked_sub(free.len()).filter(|freedom| *freedom > 0)? as f64;
+        let normal = self.normal(sums, &free)?;
+        let scale = normal.diagonal().map(f64::sqrt);
+        let scales = &scale * scale.transpose();
+        let inverse = normal.component_div(&scales).cholesky()?.inverse().component_div(&scales);
+        // Residuals of which neighbors are alike tell less: those of a first-order autoregression.
+        let alike = (sums.next / sums.rest).clamp(0.0, 0.999);
+        let variance = sums.rest / freedom * (1.0 + alike) / (1.0 - alike);
+        let estimated = |number: usize| {
+            let at = free.iter().position(|free| *free == number)?;
+            let std_error = (variance * inverse.get((at, at))?).sqrt();
+            Some(Estimated { value: *numbers.get(number)?, std_error })
+        };
+        let (stiffness, damping) = (estimated(STIFFNESS)?, estimated(DAMPING)?);
+        let usable = stiffness.value.is_finite() && stiffness.value > 0.0 && damping.std_error.is_finite();
+        usable.then_some(LinearOscillator {
+            stiffness,
+            damping,
+            rest: estimated(SHIFT)
+                .filter(|_| self.order == 0)
+                .map(|shift| shift.times(1.0 / stiffness.value)),
+            input_gain: estimated(GAIN),
+            basis: Basis::Response(self.samples),
+        })
+    }
+
+    /// Simulates the record; `None` if the motion runs away.
+    fn sums(&self, numbers: &Numbers) -> Option<Sums> {
+        let fastest = numbers[STIFFNESS].abs().sqrt().max(numbers[DAMPING].abs());
+        let mut sums = Sums { normal: SMatrix::zeros(), slope: Numbers::zeros(), rest: 0.0, next: 0.0 };
+        let mut state = State::zeros();
+        (state[(0, 0)], state[(1, 0)]) = (numbers[START], numbers[START + 1]);
+        (state[(0, START + 1)], state[(1, START + 2)]) = (1.0, 1.0);
+        let mut before: Option<f64> = None;
+        for (knot, next) in self.knots.iter().zip(self.knots.iter().skip(1).map(Some).chain([None])) {
+            if let Some(value) = knot.value {
+                let (seen, row) = self.seen(numbers, &state, knot.push);
+                let residual = value - seen;
+                sums.normal += row * row.transpose();
+                sums.slope += row * residual;
+                sums.rest += residual * residual;
+                // The first residual has none before it.
+                sums.next += residual * before.unwrap_or(0.0);
+                before = Some(residual);
+            }
+            let Some(next) = next else { break };
+            let steps = ((next.time - knot.time) * fastest / LONGEST).ceil().clamp(1.0, MOST_STEPS);
+            let step = (next.time - knot.time) / steps;
+            for number in 0..steps as usize {
+                let push = knot.push + knot.rate * step * number as f64;
+                state = self.advanced(numbers, &state, push, knot.rate, step);
+            }
+        }
+        sums.rest.is_finite().then_some(sums)
+    }
+
+    /// Returns what the sensor sees, and its derivatives with respect to the numbers.
+    fn seen(&self, numbers: &Numbers, state: &State, push: f64) -> (f64, Numbers) {
+        let rates = self.rates(numbers, state, push);
+        let seen = match self.order {
+            0 => state.row(0).into_owned(),
+            1 => state.row(1).into_owned(),
+            _ => rates.row(1).into_owned(),
+        };
+        let mut row = Numbers::from_iterator(seen.iter().skip(1).copied());
+        // A sensor of the velocity or of the acceleration sees no rest position, but has one of its own.
+        let own = if self.order == 0 { 0.0 } else { numbers[SHIFT] };
+        if self.order > 0 {
+            row[SHIFT] = 1.0;
+        }
+        (seen[0] + own, row)
+    }
+
+    /// Returns the derivatives of the state by time.
+    fn rates(&self, numbers: &Numbers, state: &State, push: f64) -> State {
+        let (stiffness, damping) = (numbers[STIFFNESS], numbers[DAMPING]);
+        let mut rates = State::zeros();
+        for (mut rate, own) in rates.column_iter_mut().zip(state.column_iter()) {
+            (rate[0], rate[1]) = (own[1], -damping * own[1] - stiffness * own[0]);
+        }
+        let shift = if self.order == 0 { 1.0 } else { 0.0 };
+        rates[(1, 0)] += numbers[GAIN] * push + shift * numbers[SHIFT];
+        rates[(1, 1 + STIFFNESS)] -= state[(0, 0)];
+        rates[(1, 1 + DAMPING)] -= state[(1, 0)];
+        rates[(1, 1 + GAIN)] += push;
+        rates[(1, 1 + SHIFT)] += shift;
+        rates
+    }
+
+    /// Takes a step by the classical method of Runge and Kutta.
+    fn advanced(&self, numbers: &Numbers, state: &State, push: f64, rate: f64, step: f64) -> State {
+        let one = self.rates(numbers, state, push);
+        let middle = push + 0.5 * rate * step;
+        let two = self.rates(numbers, &(state + 0.5 * step * one), middle);
+        let three = self.rates(numbers, &(state + 0.5 * step * two), middle);
+        let four = self.rates(numbers, &(state + step * three), push + rate * step);
+        state + step / 6.0 * (one + 2.0 * two + 2.0 * three + four)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::identify;
+    use rand_distr::{Distribution, Normal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    /// Return from 1 of a system of natural frequency 1 Hz, with a rest position of 0.3.
+    fn returning(zeta: f64, noise: f64, seed: u64) -> Record {
+        let omega = std::f64::consts::TAU;
+        let root = omega * (zeta * zeta - 1.0).sqrt();
+        let normal = Normal::new(0.0, noise).unwrap();
+        let mut draws = Seed::new(seed).child("noise").generator();
+        let times: Vec<f64> = (0..600).map(|at| 0.01 * f64::from(at)).collect();
+        let motion = |time: f64| {
+            (-zeta * omega * time).exp() * ((root * time).cosh() + zeta * omega / root * (root * time).sinh())
+        };
+        let values = times.iter().map(|time| 0.3 + motion(*time) + normal.sample(&mut draws)).collect();
+        Record::new(times, values, None, Quantity::Position, "rad").unwrap()
+    }
+
+    #[test]
+    fn a_return_without_a_swing_has_a_damping_ratio() {
+        for (zeta, seed) in [(1.001, 1), (1.3, 2), (2.0, 3)] {
+            let record = returning(zeta, 2e-3, seed);
+            let found = identify(&record, &Clock::new(&record, ClockChoice::Auto).unwrap()).unwrap();
+            let ratio = found.damping_ratio().unwrap();
+            assert!((ratio.value / zeta - 1.0).abs() < 0.1, "{zeta}: {ratio:?}");
+            assert!((found.rest.unwrap().value - 0.3).abs() < 1e-3);
+        }
+    }
+}
