@@ -54,8 +54,8 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
             response::creeping(record, clock).map_or_else(|| weak::oscillator(record, clock), Ok)
         }
         (None, None) => {
-            let guess = weak::oscillator(record, clock)?;
-            Ok(response::driven(record, clock, &guess).unwrap_or(guess))
+            let guess = weak::oscillator(record, clock);
+            response::driven(record, clock, guess.as_ref().ok()).map_or(guess, Ok)
         }
     }
 }

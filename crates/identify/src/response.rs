@@ -29,16 +29,38 @@ const LONGEST: f64 = 0.15;
 const MOST_STEPS: f64 = 200.0;
 /// Smallest stiffness that counts as a restoring torque, in its standard errors.
 const SIGNIFICANT: f64 = 3.0;
+/// Lowest guess of a natural frequency, in radians per record, and highest one, in radians per sampling interval.
+const SLOWEST: f64 = 10.0;
+const FASTEST: f64 = 1.0;
+/// Number of guesses of the frequency, and those of the damping ratio.
+const GRID: u32 = 16;
+const DAMPINGS: [f64; 2] = [0.1, 0.5];
 /// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
 /// of 1.
 const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
 
-/// Refines an oscillator that is driven by an input. `None` if it has no spring, or if the fit ends nowhere.
-pub(crate) fn driven(record: &Record, clock: &Clock, guess: &LinearOscillator) -> Option<LinearOscillator> {
+/// Fits the response to an input, from a first guess and from the best of many others. `None` without a changing
+/// input or a spring.
+pub(crate) fn driven(
+    record: &Record,
+    clock: &Clock,
+    guess: Option<&LinearOscillator>,
+) -> Option<LinearOscillator> {
     let pushes = input(record, clock)?;
-    let start = [guess.stiffness.value, guess.damping.value.max(0.0)];
-    let fits = [true, false].map(|kept| Problem::new(record, clock, &pushes, kept).fitted(start));
-    nearest(fits.into_iter().flatten())
+    let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value.max(0.0)]);
+    let duration_s = clock.times_s.last()? - clock.start_s();
+    let (slowest, fastest) = (SLOWEST / duration_s, FASTEST * clock.sample_rate_hz);
+    let fits = [true, false].map(|kept| {
+        let problem = Problem::new(record, clock, &pushes, kept);
+        let grid = (0..GRID).flat_map(|number| {
+            let omega = slowest * (fastest / slowest).powf(f64::from(number) / f64::from(GRID - 1));
+            DAMPINGS.map(|ratio| [omega * omega, 2.0 * ratio * omega])
+        });
+        let left = |start: &[f64; 2]| problem.best_of(*start).map_or(f64::INFINITY, |(_, sums)| sums.rest);
+        let best = grid.min_by(|one, other| left(one).total_cmp(&left(other)));
+        nearest(guess.into_iter().chain(best).filter_map(|start| problem.fitted(start)))
+    });
+    sprung(nearest(fits.into_iter().flatten()))
 }
 
 /// Fits a motion that returns to rest without a swing. `None` if nothing pulls it back.
@@ -49,12 +71,17 @@ pub(crate) fn creeping(record: &Record, clock: &Clock) -> Option<LinearOscillato
         let omega = omega / duration_s;
         problem.fitted([omega * omega, 2.0 * omega])
     });
-    nearest(fits)
+    sprung(nearest(fits))
 }
 
-/// Returns the oscillator with the smallest residuals if a spring pulls it back.
-fn nearest(fits: impl Iterator<Item = (f64, LinearOscillator)>) -> Option<LinearOscillator> {
-    let (_, found) = fits.min_by(|(one, _), (other, _)| one.total_cmp(other))?;
+/// Returns the fit with the smallest residuals.
+fn nearest(fits: impl Iterator<Item = (f64, LinearOscillator)>) -> Option<(f64, LinearOscillator)> {
+    fits.min_by(|(one, _), (other, _)| one.total_cmp(other))
+}
+
+/// Returns the oscillator of a fit if a spring pulls it back.
+fn sprung(fit: Option<(f64, LinearOscillator)>) -> Option<LinearOscillator> {
+    let (_, found) = fit?;
     (found.stiffness.value > SIGNIFICANT * found.stiffness.std_error).then_some(found)
 }
 
@@ -112,10 +139,8 @@ impl Problem {
     }
 
     /// Fits all numbers from a stiffness and a damping; returns the sum of the squared residuals, and the oscillator.
-    fn fitted(&self, [stiffness, damping]: [f64; 2]) -> Option<(f64, LinearOscillator)> {
-        let mut numbers = Numbers::zeros();
-        (numbers[STIFFNESS], numbers[DAMPING]) = (stiffness, damping);
-        let mut sums = self.sums(&numbers)?;
+    fn fitted(&self, start: [f64; 2]) -> Option<(f64, LinearOscillator)> {
+        let (mut numbers, mut sums) = self.best_of(start)?;
         let mut lambda = 1e-6;
         for _ in 0..STEPS {
             let next = self.step(&sums, lambda).map(|step| numbers + step);
@@ -134,13 +159,21 @@ impl Problem {
         Some((sums.rest, self.oscillator(&numbers, &sums)?))
     }
 
+    /// Returns the best numbers for a stiffness and a damping: the motion is linear in the others, and a system at rest
+    /// tells nothing of the two.
+    fn best_of(&self, [stiffness, damping]: [f64; 2]) -> Option<(Numbers, Sums)> {
+        let mut numbers = Numbers::zeros();
+        (numbers[STIFFNESS], numbers[DAMPING]) = (stiffness, damping);
+        let numbers = numbers + self.step(&self.sums(&numbers)?, 0.0)?;
+        Some((numbers, self.sums(&numbers)?))
+    }
+
     /// Returns the numbers that the record determines.
     fn free(&self) -> Vec<usize> {
         (0..COUNT).filter(|number| *number != GAIN || self.is_driven).collect()
     }
 
-    /// Returns the step of the method of Levenberg and Marquardt. A system at rest, as the fit begins, moves by the
-    /// other numbers first.
+    /// Returns the step of the method of Levenberg and Marquardt in all numbers that the motion depends on.
     fn step(&self, sums: &Sums, lambda: f64) -> Option<Numbers> {
         let mut free = self.free();
         free.retain(|at| sums.normal.get((*at, *at)).is_some_and(|size| *size > 0.0));

@@ -148,8 +148,8 @@ impl Clock {
     }
 
     /// Returns the time in seconds and the input of each of the record's [`Record::input_rows`]. The time is
-    /// the row's stamp if the clock is the host's, and is otherwise interpolated by row number between the
-    /// neighboring samples.
+    /// the row's stamp if the clock is the host's, and is otherwise interpolated between the neighboring samples, by row
+    /// number, or by stamp for an input without a row number of its own.
     #[must_use]
     pub fn inputs_between(&self, record: &Record) -> Vec<(f64, f64)> {
         debug_assert_eq!(self.times_s.len(), record.len(), "a clock has a time for every sample");
@@ -157,7 +157,13 @@ impl Clock {
         let rows = record.rows().unwrap_or_default();
         let by_number = |own: &InputRow| {
             let [(first, from), (last, to)] = beside(rows, &self.times_s, own.row)?;
-            Some(from + (to - from) * (own.row - first) as f64 / (last - first) as f64)
+            let passed = if own.row > first {
+                (own.row - first) as f64 / (last - first) as f64
+            } else {
+                let [(_, before), (_, after)] = beside(rows, record.stamps_s(), own.row)?;
+                (own.stamp_s - before) / (after - before)
+            };
+            Some(from + (to - from) * passed).filter(|time| time.is_finite())
         };
         let time = |own: &InputRow| match self.kind {
             ClockKind::Host => own.stamp_s,

@@ -33,6 +33,8 @@ struct Samples {
     input: Vec<f64>,
     missing_cells: usize,
     missing_lines: usize,
+    /// Number of lines that hold only an input, among lines between which it is held.
+    held_lines: usize,
     first_missing: Option<(u64, usize)>,
 }
 
@@ -162,7 +164,9 @@ fn fill(
         parsed.push(*line, *stamp, value * factor, input)?;
         numbers.push(number);
     }
-    parsed.rows = (samples.missing_lines > 0 && asked.missing == Missing::Segment).then_some(numbers);
+    let is_numbered =
+        samples.missing_lines > 0 && asked.missing == Missing::Segment || samples.held_lines > 0;
+    parsed.rows = is_numbered.then_some(numbers);
     Ok(())
 }
 
@@ -308,7 +312,13 @@ impl<'a> Reader<'a> {
             if !missing.contains(&input.at) {
                 self.last_input = Some(read(input.at)?);
             }
-            if missing.contains(&chosen.value.at) || self.last_input.is_none() {
+            if self.last_input.is_none() {
+                return Ok(false);
+            }
+            if missing.contains(&chosen.value.at) {
+                if let Some(before) = number.checked_sub(1).filter(|_| !missing.contains(&input.at)) {
+                    self.between(line, before, cell)?;
+                }
                 return Ok(false);
             }
             missing.retain(|at| *at != input.at);
@@ -332,16 +342,7 @@ impl<'a> Reader<'a> {
                 return Ok(true);
             }
         }
-        if let Some(time) = chosen.time {
-            let stamp = |at: usize| {
-                Stamp::parse(cell(at), dialect).ok_or_else(|| not_a_number(table, line, at, cell(at)))
-            };
-            let whole = stamp(time.at)?;
-            self.samples.stamps.push(match chosen.nanoseconds {
-                Some(at) => whole.with_nanoseconds(stamp(at)?),
-                None => whole,
-            });
-        }
+        self.stamp(line, cell)?;
         self.samples.values.push(if missing.is_empty() { Some(read(chosen.value.at)?) } else { None });
         if let Some(input) = chosen.input {
             let held = self.last_input.filter(|_| self.held);
@@ -350,6 +351,37 @@ impl<'a> Reader<'a> {
         self.samples.lines.push(line);
         self.samples.numbers.push(number);
         Ok(true)
+    }
+
+    /// Reads a line that holds only an input, among lines between which it is held. It has the number of the line
+    /// before.
+    fn between(&mut self, line: u64, number: usize, cell: &dyn Fn(usize) -> &'a str) -> Result<(), Fault> {
+        // Without a time column a line between two samples has no time.
+        if self.chosen.time.is_none() {
+            return Ok(());
+        }
+        self.stamp(line, cell)?;
+        self.samples.values.push(None);
+        self.samples.input.extend(self.last_input);
+        self.samples.lines.push(line);
+        self.samples.numbers.push(number);
+        self.samples.held_lines += 1;
+        Ok(())
+    }
+
+    /// Reads the stamp of a line, if there is a time column.
+    fn stamp(&mut self, line: u64, cell: &dyn Fn(usize) -> &'a str) -> Result<(), Fault> {
+        let (table, Some(time)) = (self.table, self.chosen.time) else { return Ok(()) };
+        let stamp = |at: usize| {
+            Stamp::parse(cell(at), table.layout.dialect)
+                .ok_or_else(|| not_a_number(table, line, at, cell(at)))
+        };
+        let whole = stamp(time.at)?;
+        self.samples.stamps.push(match self.chosen.nanoseconds {
+            Some(at) => whole.with_nanoseconds(stamp(at)?),
+            None => whole,
+        });
+        Ok(())
     }
 }
 

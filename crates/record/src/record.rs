@@ -140,14 +140,13 @@ impl Record {
         let numbers = self.rows.as_deref().filter(|_| self.input.is_some()).unwrap_or_default();
         let is_between = |row: &InputRow| {
             let ends = beside(numbers, &self.stamps_s, row.row);
-            ends.is_some_and(|[(number, from), (_, to)]| {
-                number < row.row && (from..=to).contains(&row.stamp_s)
-            })
+            ends.is_some_and(|[(_, from), (_, to)]| (from..=to).contains(&row.stamp_s))
         };
         let mut input_rows: Vec<InputRow> =
             rows.into_iter().filter(|row| row.input.is_finite() && is_between(row)).collect();
-        input_rows.sort_by_key(|row| row.row);
-        input_rows.dedup_by_key(|row| row.row);
+        input_rows
+            .sort_by(|one, other| (one.row.cmp(&other.row)).then(one.stamp_s.total_cmp(&other.stamp_s)));
+        input_rows.dedup_by(|later, one| later.row == one.row && later.stamp_s <= one.stamp_s);
         Self { input_rows, ..self }
     }
 
