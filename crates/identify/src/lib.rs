@@ -48,18 +48,21 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
         (Some(peaks), Some(samples)) if peaks.damping.std_error < TIGHTER * samples.damping.std_error => {
             Ok(peaks)
         }
+        (_, Some(samples)) if samples.damping_ratio().is_some_and(|ratio| ratio.value > FEW_CYCLES) => {
+            Ok(response::returning(record, clock, Some(&samples)).unwrap_or(samples))
+        }
         (_, Some(samples)) => Ok(samples),
         (Some(peaks), None) => Ok(peaks),
-        (None, None) if free => {
-            response::creeping(record, clock).map_or_else(|| weak::oscillator(record, clock), Ok)
-        }
         (None, None) => {
             let guess = weak::oscillator(record, clock);
-            response::driven(record, clock, guess.as_ref().ok()).map_or(guess, Ok)
+            let fit = if free { response::returning } else { response::driven };
+            fit(record, clock, guess.as_ref().ok()).map_or(guess, Ok)
         }
     }
 }
 
+/// Damping ratio above which a free decay is over in few cycles, and a response is fitted to all of it.
+const FEW_CYCLES: f64 = 0.2;
 /// Standard errors of a damping ratio, relative and absolute, below which turning points need no help.
 const WELL_KNOWN: (f64, f64) = (0.05, 1e-4);
 /// Ratio of standard errors from which on the samples are believed and not the turning points.

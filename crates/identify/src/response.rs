@@ -63,15 +63,18 @@ pub(crate) fn driven(
     sprung(nearest(fits.into_iter().flatten()))
 }
 
-/// Fits a motion that returns to rest without a swing. `None` if nothing pulls it back.
-pub(crate) fn creeping(record: &Record, clock: &Clock) -> Option<LinearOscillator> {
+/// Fits a motion that returns to rest in a few cycles or without a swing, from a first guess and from others. `None` if
+/// nothing pulls it back.
+pub(crate) fn returning(
+    record: &Record,
+    clock: &Clock,
+    guess: Option<&LinearOscillator>,
+) -> Option<LinearOscillator> {
     let problem = Problem::new(record, clock, &[], false);
     let duration_s = clock.times_s.last()? - clock.start_s();
-    let fits = CREEPING.iter().filter_map(|omega| {
-        let omega = omega / duration_s;
-        problem.fitted([omega * omega, 2.0 * omega])
-    });
-    sprung(nearest(fits))
+    let creeping = CREEPING.map(|omega| omega / duration_s).map(|omega| [omega * omega, 2.0 * omega]);
+    let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value]);
+    sprung(nearest(guess.into_iter().chain(creeping).filter_map(|start| problem.fitted(start))))
 }
 
 /// Returns the fit with the smallest residuals.
