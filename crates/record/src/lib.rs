@@ -50,7 +50,7 @@ pub use file::{Source, file_digest, read_file, read_text};
 pub use lattice::Lattice;
 pub use look::{ColumnLook, Look, look};
 pub use options::{Format, ReadOptions};
-pub use reading::{ColumnReading, Coordinate, Reading};
+pub use reading::{ColumnReading, Coordinate, Reading, Whole};
 pub use record::{InputRow, Quantity, Record};
 pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};

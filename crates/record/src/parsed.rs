@@ -3,7 +3,7 @@
 use crate::error::Fault;
 use crate::free::{FreeSwing, free_swings};
 use crate::options::ReadOptions;
-use crate::reading::{Coordinate, Reading};
+use crate::reading::{Coordinate, Reading, Whole};
 use crate::record::{InputRow, Record};
 use crate::statement::Statements;
 use crate::unit::{Dimension, Unit};
@@ -80,8 +80,10 @@ impl Parsed {
         let part = largest_part(&record, &swings);
         findings.extend(part.map(|part| part_said(&record, &swings, part)));
         let [from_s, to_s] = part.map_or([options.from_s, options.to_s], |part| part.map(Some));
+        let whole = Whole::new(&record, swings.iter().filter_map(|swing| ends(&record, swing)).collect());
         let (record, part_s) = record.between(from_s, to_s)?;
-        let reading = Reading { quantity, coordinate, part_s, ..self.reading }.worded(rate_hz);
+        let whole = part_s.map(|_| whole);
+        let reading = Reading { quantity, coordinate, part_s, whole, ..self.reading }.worded(rate_hz);
         Ok((record, self.statements, findings, reading))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::columns::Missing;
 use crate::record::Quantity;
+use crate::record::Record;
 use crate::unit::TimeUnit;
 use crate::words::counted;
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,35 @@ impl ColumnReading {
     }
 }
 
+/// A record of which only a part was read, for people to look at.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Whole {
+    /// Stamps between which it swings freely, in seconds; empty if the part was stated.
+    pub free_s: Vec<[f64; 2]>,
+    /// Stamps in seconds and values in SI units: the lowest and the highest of each of a few hundred stretches.
+    pub outline: Vec<[f64; 2]>,
+}
+
+/// Number of stretches of an outline.
+const STRETCHES: usize = 400;
+
+impl Whole {
+    pub(crate) fn new(record: &Record, free_s: Vec<[f64; 2]>) -> Self {
+        let samples: Vec<[f64; 2]> =
+            record.stamps_s().iter().zip(record.values()).map(|(stamp, value)| [*stamp, *value]).collect();
+        let outline = samples.chunks(samples.len().div_ceil(STRETCHES).max(1)).flat_map(|stretch| {
+            let by_value = |one: &&[f64; 2], other: &&[f64; 2]| one[1].total_cmp(&other[1]);
+            let ends = [stretch.iter().min_by(by_value), stretch.iter().max_by(by_value)];
+            let mut ends: Vec<[f64; 2]> = ends.into_iter().flatten().copied().collect();
+            ends.sort_by(|one, other| one[0].total_cmp(&other[0]));
+            ends.dedup();
+            ends
+        });
+        Self { free_s, outline: outline.collect() }
+    }
+}
+
 /// Interpretation of a file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -62,6 +92,9 @@ pub struct Reading {
     pub counts_per_turn: Option<f64>,
     /// Part of the time that was read, in seconds, if it is not the whole record.
     pub part_s: Option<[f64; 2]>,
+    /// The whole record, if only a part was read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub whole: Option<Whole>,
     /// Column of the input.
     pub input: Option<ColumnReading>,
     /// Filter on the lines: `COLUMN=VALUE`.

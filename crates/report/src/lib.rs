@@ -23,6 +23,7 @@ pub mod format;
 mod frame;
 pub mod glossary;
 mod learning;
+mod modes;
 mod page;
 mod parse;
 pub mod plot;
@@ -35,6 +36,7 @@ mod tables;
 mod texts;
 mod trials;
 mod verdict;
+mod whole;
 
 #[cfg(test)]
 mod sample;
@@ -45,6 +47,7 @@ pub use classes::{
 };
 pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
 pub use error::ReportError;
+pub use modes::{mode_words, sentence as modes_sentence};
 pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
 pub use texts::RunTexts;

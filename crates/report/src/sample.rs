@@ -213,6 +213,7 @@ fn result() -> EstimationResult {
         worst_error_percent: 2.7e-5,
         disagreement: None,
         truth: None,
+        modes: Vec::new(),
         pipelines: vec![
             pipeline("paper", "uniform-index", true, 69, 0.008_753, 0.9645),
             pipeline("paper", "host", false, 68, 0.008_811, 0.9581),

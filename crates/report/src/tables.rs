@@ -3,6 +3,7 @@
 use results::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow, TruthComparison};
 
 use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
+use crate::modes::mode_words;
 
 /// A quantity and its value, as shown on the page.
 pub(crate) struct Fact {
@@ -96,7 +97,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
 /// Returns facts about the envelope that every method was fitted to.
 pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
     let envelope = &result.envelope;
-    vec![
+    let mut facts = vec![
         fact("Pipeline", envelope.pipeline_in_words()),
         fact("Peaks", whole(envelope.peaks)),
         fact("Samples after interpolation", whole(envelope.samples)),
@@ -104,7 +105,9 @@ pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
         fact("Angular frequency ω", quantity(&significant(envelope.omega_rad_s, 6), "rad/s")),
         fact("Rest position removed", quantity(&significant(envelope.offset, 4), &result.data.unit)),
         fact("First peak after the first sample", quantity(&significant(envelope.first_peak_s, 4), "s")),
-    ]
+    ];
+    facts.extend(mode_words(&result.modes).into_iter().map(|words| fact("Mode", words)));
+    facts
 }
 
 /// Returns facts about the training of the estimate.

@@ -4,6 +4,7 @@ use super::estimation::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow
 use super::failure::Failure;
 use super::interval::null_is_not_a_number;
 use super::method::{Ablation, Estimand, Family, Reached};
+use super::modes::ModeRow;
 use serde::{Deserialize, Serialize};
 
 /// Result of a comparison of methods: the content of `result.json` with `task = "compare"`.
@@ -39,6 +40,9 @@ pub struct ComparisonResult {
     pub pass: bool,
     /// Wall time of all fits together, in seconds.
     pub seconds: f64,
+    /// Modes of the record, the most powerful first; empty if it shows only one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<ModeRow>,
     /// Certified least-squares results on the same record for each pipeline and clock.
     pub pipelines: Vec<PipelineRow>,
     /// Disagreement beyond the standard errors between these results: its size and the result to trust;

@@ -4,6 +4,7 @@
 
 use super::calibration::Calibration;
 use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
+use super::modes::ModeRow;
 use record::Origin;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -46,6 +47,9 @@ pub struct DiagnosisResult {
     pub seconds: f64,
     /// Wall time by stage.
     pub stages: Vec<StageRow>,
+    /// Modes of the first record that shows several, the most powerful first; empty if none does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<ModeRow>,
     /// Diagnosed records, in the order given.
     pub records: Vec<RecordRow>,
     /// Path of the nominal simulator's file.

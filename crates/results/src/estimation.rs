@@ -1,6 +1,7 @@
 //! Results of an estimation, and the parts that several results share.
 
 use super::method::Reached;
+use super::modes::ModeRow;
 use crate::interval::null_is_not_a_number;
 use record::{Clock, Origin, Record, Source, Statements};
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,9 @@ pub struct EstimationResult {
     /// Largest `error_percent` over `seeds`.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub worst_error_percent: f64,
+    /// Modes of the record, the most powerful first; empty if it shows only one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<ModeRow>,
     /// Closed-form least-squares results on the same record for each pipeline and clock.
     pub pipelines: Vec<PipelineRow>,
     /// Disagreement beyond the standard errors between these results: its size and the result to trust;

@@ -17,6 +17,7 @@ mod interval;
 mod launch;
 mod learning;
 mod method;
+mod modes;
 mod prediction;
 mod rigs;
 mod search;
@@ -36,7 +37,7 @@ pub use diagnosis::{
     RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, VerdictStatus,
 };
 /// Origin of a record's numbers.
-pub use record::Origin;
+pub use record::{Origin, Reading};
 
 pub use estimation::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary,
@@ -51,6 +52,7 @@ pub use learning::{
     LearnTest, LearnTorqueRow, LearnTraceRow, LearnValidation,
 };
 pub use method::{Ablation, Estimand, Family, Reached};
+pub use modes::ModeRow;
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy, SplitKind,

@@ -21,6 +21,7 @@ mod error;
 pub mod guess;
 pub mod learning;
 mod logs;
+mod modes;
 pub mod nominal;
 mod question;
 pub mod read;
@@ -29,6 +30,7 @@ mod result;
 
 pub use error::{WorkflowError, in_options};
 pub use logs::{is_log, is_run, logs};
+pub use modes::{mode_rows, modes};
 pub use question::{Answer, Question};
 pub use read::{Given, Loaded, Reading};
 pub use result::{series_rows, title};

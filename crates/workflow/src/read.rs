@@ -10,7 +10,9 @@ use record::{
     Clock, ClockChoice, Fault, Origin, Quantity, ReadOptions, Record, Source, Statements, Unit, extremes,
 };
 use report::format::{quantity, significant};
-use results::{DataSummary, RecordRow};
+use results::{DataSummary, ModeRow, RecordRow};
+
+use crate::modes::modes;
 use std::path::Path;
 
 /// Options for reading record files.
@@ -98,6 +100,8 @@ pub struct Given {
     pub observations: Observations,
     /// Row of the record in results.
     pub row: RecordRow,
+    /// Modes of the record; empty if it shows only one.
+    pub modes: Vec<ModeRow>,
     /// Observed quantity.
     pub quantity: Quantity,
     /// `true` if there is an input.
@@ -186,6 +190,7 @@ impl Loaded {
                     .collect(),
                 reading: summary.reading,
             },
+            modes: modes(record, &clock),
             quantity: record.quantity(),
             driven: record.input().is_some(),
             rate_hz: clock.sample_rate_hz,

@@ -47,6 +47,13 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             .iter()
             .map(|stage| StageRow { name: stage.name.to_owned(), seconds: stage.seconds })
             .collect(),
+        modes: beside
+            .given
+            .iter()
+            .map(|given| &given.modes)
+            .find(|modes| !modes.is_empty())
+            .cloned()
+            .unwrap_or_default(), // Empty unless a record shows several.
         records: beside.given.iter().map(|given| given.row.clone()).collect(),
         nominal: beside.nominal.to_owned(),
         nominal_digest: beside.nominal_digest.to_owned(),

@@ -127,6 +127,7 @@ pub(crate) fn result() -> ComparisonResult {
         tolerance_percent: 0.1,
         pass: false,
         seconds: 163.2,
+        modes: Vec::new(),
         pipelines: run.pipelines,
         disagreement: None,
         truth: None,

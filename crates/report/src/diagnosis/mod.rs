@@ -6,6 +6,7 @@ mod figures;
 mod maps;
 mod portrait;
 mod record;
+mod spectrum;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -83,7 +84,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         effects: tables::effects(result),
         apart: tables::apart(result),
         experiments: tables::experiments(result),
-        record_figures: record::figures(result, &diagnosis.series),
+        record_figures: record::figures(result, &diagnosis.series)
+            .into_iter()
+            .chain(spectrum::figure(result, &diagnosis.series))
+            .collect(),
         place_figures: maps::figures(result),
         portrait_figures: portrait::figures(result),
         no_backbone: result.backbone.measured.is_empty(),

@@ -7,6 +7,7 @@ use crate::classes::listed;
 use crate::figures::{Figure, csv, number};
 use crate::format::{self, quantity, significant};
 use crate::plot::{Axis, BREAK, Hue, Mark, Plot, Series};
+use crate::whole;
 
 /// Largest number of samples shown of the worst stretch: a few periods of an ordinary record.
 const MOST_SHOWN: usize = 500;
@@ -28,15 +29,18 @@ impl Worst<'_> {
 
 pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> Vec<Figure> {
     let Some(worst) = worst(rows) else { return Vec::new() };
-    [
+    let wholes = result.records.iter().take(MOST_RECORDS).enumerate().filter_map(|(index, record)| {
+        let of = if result.records.len() > 1 { format!(" of record {}", index + 1) } else { String::new() };
+        let title = format!("The part{of} that was read");
+        whole::figure(format!("whole-{}", index + 1), title, observed_axis(result), &record.reading)
+    });
+    let others = [
         overview(result, rows, &worst),
         input(result, rows),
         zoom(result, &worst),
         residuals(result, rows, &worst),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    wholes.chain(others.into_iter().flatten()).collect()
 }
 
 fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
@@ -51,7 +55,7 @@ fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
     Some(Worst { record: rows.first()?.record, rows })
 }
 
-fn observed_axis(result: &DiagnosisResult) -> Axis {
+pub(super) fn observed_axis(result: &DiagnosisResult) -> Axis {
     let what = match (result.quantity.as_str(), result.gap.unit.as_str()) {
         ("position", "rad") => "angle",
         ("position", "m") => "displacement",

@@ -15,6 +15,7 @@ pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
         gap(result),
         apart(result),
         whereabouts(result),
+        report::modes_sentence(&result.modes),
         calibration(result),
         chain(result),
         format!("took: {}", stages(result)),

@@ -269,7 +269,7 @@ impl Found {
                 "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
                 "basis": files::basis(&self.surest.oscillator),
             },
-            "modes": modes::json_of(&self.surest.modes),
+            "modes": workflow::mode_rows(&self.surest.modes),
             "logs": self.each.iter().map(|log| json!({
                 "path": log.path, "samples": log.samples,
                 "natural_frequency_hz": number(log.natural_frequency_hz), "damping_ratio": number(log.damping_ratio),

@@ -1,8 +1,7 @@
 //! The modes of a record that has several, in words, rows and JSON.
 
 use identify::{Estimated, Mode};
-use report::format::with_uncertainty;
-use serde_json::{Value, json};
+use report::format::{percent, with_uncertainty};
 
 pub(super) fn uncertain(estimated: Estimated) -> String {
     format!("{} (standard error)", with_uncertainty(estimated.value, estimated.std_error))
@@ -19,32 +18,13 @@ pub(super) fn remark(modes: &[Mode]) -> Option<String> {
     })
 }
 
-/// Returns the modes with their intervals of 95 %, empty for a record of one mode.
-pub(super) fn json_of(modes: &[Mode]) -> Vec<Value> {
-    let number = |found: Estimated| {
-        let half = 1.96 * found.std_error;
-        json!({
-            "value": found.value, "std_error": found.std_error,
-            "interval_95": [found.value - half, found.value + half],
-        })
-    };
-    let several = Some(modes).filter(|modes| modes.len() > 1);
-    let mode = |mode: &Mode| {
-        json!({
-            "frequency_hz": number(mode.frequency_hz), "damping_ratio": number(mode.damping_ratio),
-            "share": mode.share,
-        })
-    };
-    several.into_iter().flatten().map(mode).collect()
-}
-
 /// Returns a row of the table for each of several modes.
 pub(super) fn rows(modes: &[Mode]) -> Vec<Vec<String>> {
     let several = Some(modes).filter(|modes| modes.len() > 1);
     let row = |(at, mode): (usize, &Mode)| {
         let [frequency, ratio] = [mode.frequency_hz, mode.damping_ratio].map(uncertain);
-        let share = 100.0 * mode.share;
-        let numbers = format!("{frequency}, Hz; damping ratio {ratio}; {share:.0} % of the power");
+        let share = percent(100.0 * mode.share);
+        let numbers = format!("{frequency}, Hz; damping ratio {ratio}; {share} of the power");
         vec![format!("mode {}", at + 1), numbers]
     };
     several.into_iter().flatten().enumerate().map(row).collect()

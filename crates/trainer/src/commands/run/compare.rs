@@ -203,6 +203,7 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
         disagreement: disagreement(&pipelines, &input.data_summary(experiment)),
         truth: None,
         envelope,
+        modes: workflow::modes(&input.record, &input.clock),
         pipelines,
     }
 }

@@ -107,6 +107,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         worst_error_percent: worst,
         disagreement: disagreement(&input.pipelines, &input.data_summary(experiment)),
         truth: None,
+        modes: workflow::modes(&input.record, &input.clock),
         pipelines: input.pipelines.clone(),
     }
 }
