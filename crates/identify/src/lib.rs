@@ -14,6 +14,7 @@ mod error;
 mod modes;
 mod observed;
 mod oscillator;
+mod regular;
 mod response;
 mod samples_pipeline;
 mod weak;
@@ -21,6 +22,7 @@ mod weak;
 pub use error::IdentifyError;
 pub use modes::{Mode, modes};
 pub use oscillator::{Basis, Estimated, LinearOscillator};
+pub use regular::regular_part;
 pub use samples_pipeline::SamplesPipeline;
 
 use observed::input;

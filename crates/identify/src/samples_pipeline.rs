@@ -70,13 +70,13 @@ struct Swing {
 
 /// Damped sinusoid fitted to the samples of a window.
 #[derive(Debug, Clone, Copy)]
-struct Window {
+pub(crate) struct Window {
     /// Time of the center, in seconds.
-    time: f64,
+    pub(crate) time: f64,
     /// Amplitudes of the cosine and of the sine at the center.
-    parts: (f64, f64),
+    pub(crate) parts: (f64, f64),
     /// Variance of the amplitude for noise of variance 1.
-    leverage: f64,
+    pub(crate) leverage: f64,
     /// Sum of the squared residuals.
     rest: f64,
     /// Number of samples.
@@ -84,7 +84,7 @@ struct Window {
 }
 
 impl Window {
-    fn amplitude(&self) -> f64 {
+    pub(crate) fn amplitude(&self) -> f64 {
         self.parts.0.hypot(self.parts.1)
     }
 
@@ -143,6 +143,18 @@ impl SamplesPipeline {
             input_gain: None,
             basis: Basis::Samples(windows.len()),
         })
+    }
+
+    /// Returns all windows of a period whose amplitude is clear, whether or not they belong to one free decay, with the noise of a
+    /// sample.
+    pub(crate) fn clear_windows(&self, record: &Record, clock: &Clock) -> Option<(Vec<Window>, f64)> {
+        let swing = Swing::guessed(record, clock).ok()?;
+        let (windows, _) = swing.windows(&clock.times_s, TAU / swing.omega);
+        let noise = median(windows.iter().map(Window::scatter).collect())?;
+        let is_clear =
+            |window: &Window| window.amplitude() > self.floor_in_errors * noise * window.leverage.sqrt();
+        let clear = windows.into_iter().filter(is_clear).collect();
+        Some((swing.turned(clear), noise))
     }
 
     /// Fits windows of a free decay, longer ones where the noise hides the swing in short ones.
@@ -276,6 +288,16 @@ impl Swing {
     fn corrected(self, found: &Found) -> Result<Self, EnvelopeError> {
         let [omega, decay] = self.drifts(&found.windows, found.noise);
         Self::underdamped(self.omega - omega.value, decay.value, self.values)
+    }
+
+    /// Returns windows whose phases are those of the swing's own phase at the same time.
+    fn turned(&self, windows: Vec<Window>) -> Vec<Window> {
+        let turn = |window: Window| {
+            let (sine, cosine) = (self.omega * window.time).sin_cos();
+            let (x, y) = window.parts;
+            Window { parts: (x * cosine - y * sine, x * sine + y * cosine), ..window }
+        };
+        windows.into_iter().map(turn).collect()
     }
 
     /// Returns the drifts of the windows' phases from those of the swing and of the logarithms of their amplitudes

@@ -11,7 +11,7 @@ use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
 use experiment::envelope_by_default;
-use identify::{Estimated, LinearOscillator, Mode, identify};
+use identify::{Estimated, LinearOscillator, Mode, identify, regular_part};
 use modes::uncertain;
 use record::{Fault, Look, ReadOptions, look};
 use report::format::significant;
@@ -354,6 +354,7 @@ impl Found {
             .chain(self.few_cycles())
             .chain(self.no_swing())
             .chain(modes::remark(&self.surest.modes))
+            .chain(self.uneven())
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -380,6 +381,20 @@ impl Found {
                 100.0 * part
             )
         })
+    }
+
+    /// Returns a remark if only a part of the record swings evenly, and not because of another mode.
+    fn uneven(&self) -> Option<String> {
+        let Looked { look, modes, .. } = &self.surest;
+        let [from, to] = regular_part(&look.record, &look.clock).filter(|_| modes.len() < 2)?;
+        // Times of the clock begin where the stamps do.
+        let shift = look.record.stamps_s().first()? - look.clock.start_s();
+        Some(format!(
+            "amplitude or phase change unevenly outside {from:.2} s to {to:.2} s, as if a hand or something else moved it \
+             there: --from {from:.2} --to {to:.2} read that part alone",
+            from = from + shift,
+            to = to + shift
+        ))
     }
 
     /// Returns a remark if the record has no natural frequency.
