@@ -32,6 +32,12 @@ pub(crate) fn figures(run: &Run) -> Vec<Figure> {
     [envelope(run), residuals(run), loss(run), decay_rate(run), distance(run)].into_iter().flatten().collect()
 }
 
+/// Takes the first plot for the top of the page, below the verdict.
+pub(crate) fn lead(figures: &mut Vec<Figure>) -> Vec<Figure> {
+    let first = figures.len().min(1);
+    figures.drain(..first).collect()
+}
+
 fn envelope(run: &Run) -> Option<Figure> {
     let rows = &run.envelope;
     let plot = Plot {

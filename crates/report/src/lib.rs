@@ -45,7 +45,9 @@ pub use classes::{
 };
 pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
 pub use error::ReportError;
-pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
+pub use remarks::{
+    bar_state, is_believed, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings,
+};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
 pub use texts::RunTexts;
 pub use trials::class_rows;

@@ -26,17 +26,11 @@ impl Worst<'_> {
     }
 }
 
-pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> Vec<Figure> {
-    let Some(worst) = worst(rows) else { return Vec::new() };
-    [
-        overview(result, rows, &worst),
-        input(result, rows),
-        zoom(result, &worst),
-        residuals(result, rows, &worst),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+/// Returns the plot that shows record and simulators together, for the top of the page, and the others.
+pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> (Vec<Figure>, Vec<Figure>) {
+    let Some(worst) = worst(rows) else { return (Vec::new(), Vec::new()) };
+    let others = [overview(result, rows, &worst), input(result, rows), residuals(result, rows, &worst)];
+    (zoom(result, &worst).into_iter().collect(), others.into_iter().flatten().collect())
 }
 
 fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {

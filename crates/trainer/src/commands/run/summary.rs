@@ -12,7 +12,8 @@ use std::path::Path;
 
 /// Formats an estimate for the terminal.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
-    let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
+    let (doubt, differing) = differing(result.disagreement.as_ref(), &result.pipelines, &result.data);
+    let mut parts: Vec<String> = doubt.into_iter().collect();
     parts.extend([headline(result), numbers(result)]);
     if result.seeds.len() > 1 {
         parts.push(format!(
@@ -24,9 +25,23 @@ pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
         ));
     }
     parts.push(pipelines(&result.pipelines));
+    parts.extend(differing);
     parts.push(remarks(result).join("\n"));
     parts.push(ending(folder));
     parts.join("\n\n")
+}
+
+/// Returns the sentence on pipelines or clocks that differ, in one of two places: before the answer if another
+/// answer is to be believed, else below it.
+fn differing(
+    disagreement: Option<&String>,
+    pipelines: &[PipelineRow],
+    data: &DataSummary,
+) -> (Option<String>, Option<String>) {
+    match report::is_believed(pipelines, data) {
+        true => (None, disagreement.map(|said| format!("note: {said}"))),
+        false => (disagreement.cloned(), None),
+    }
 }
 
 fn headline(result: &EstimationResult) -> String {
@@ -35,8 +50,12 @@ fn headline(result: &EstimationResult) -> String {
         0 | 1 => "its damping ratio is".to_owned(),
         count => format!("the worst damping ratio of {count} seeds is"),
     };
+    // A method that states no error has none shown.
+    let error = result.estimate.zeta_std_error.unwrap_or_default();
     format!(
-        "{} on {} ({} record): {verdict} least squares to {} %; {whose} {} % from that of the closed form",
+        "damping ratio ζ = {}\n{} on {} ({} record): {verdict} least squares to {} %; {whose} {} % from that of the closed \
+         form",
+        ratio(result.estimate.zeta, error),
         result.estimator_title,
         result.data.path,
         result.data.origin.name(),
@@ -88,13 +107,16 @@ fn truth(known: Option<&TruthComparison>) -> Vec<Vec<String>> {
 
 /// Formats a comparison for the terminal: the paper's Tables 3 to 5 in one screen or two.
 pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
-    let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
+    let (doubt, differing) = differing(result.disagreement.as_ref(), &result.pipelines, &result.data);
+    let mut parts: Vec<String> = doubt.into_iter().collect();
     parts.extend([
         comparison_headline(result),
         oscillation(result),
         methods(result),
         contributions(result),
         pipelines(&result.pipelines),
+        // Pipelines that agree leave nothing to say.
+        differing.unwrap_or_default(),
         comparison_remarks(result),
         ending(folder),
     ]);
@@ -117,8 +139,9 @@ fn comparison_headline(result: &ComparisonResult) -> String {
         count => format!("seeds {} to {}", result.seed, result.seed + count - 1),
     };
     format!(
-        "{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
+        "damping ratio ζ = {}\n{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
          form{}, {seeds}, {:.1} s",
+        ratio(result.oracle.zeta, result.oracle.zeta_std_error),
         result.data.path,
         result.data.origin.name(),
         result.tolerance_percent,
