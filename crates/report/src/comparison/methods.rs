@@ -10,7 +10,8 @@ pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀
      worst is the largest over a method’s seeds. Digits are the significant digits in which the worst seed \
      agrees with ζ₀; a double has 15.7. ± is the method’s own standard error of ζ, where it states one. ζ, \
      steps and state are the first seed’s, the time of a fit is the median over the seeds. A method passes \
-     where every seed is within the stated tolerance, or where it estimates something else. “May differ” \
+     where every seed is within the stated tolerance, or where it estimates something else; a weak baseline \
+     with a fixed number of steps that did not suffice does not count. “May differ” \
      states whether the method’s value can differ from least squares at all. “At zero” and “on noise” are \
      the first seed’s errors in percent with the learned part set to zero and with noise in place of its \
      input: if such an error stays small, the learned part, or its input, contributed nothing to λ. Columns \
@@ -70,12 +71,27 @@ pub(super) struct MethodView {
     /// Reason that the first seed's fit stopped; empty if there is no estimate.
     pub(super) because: String,
     pub(super) passes: bool,
+    /// `true` if a miss does not count.
+    pub(super) excused: bool,
 }
 
 impl MethodView {
     /// The last cell.
     pub(super) fn verdict(&self) -> &'static str {
-        if self.passes { "pass" } else { "FAIL" }
+        match (self.passes, self.excused) {
+            (true, _) => "pass",
+            (false, true) => "does not count",
+            (false, false) => "FAIL",
+        }
+    }
+
+    /// Class of the last cell in the style sheet.
+    pub(super) fn tone(&self) -> &'static str {
+        match (self.passes, self.excused) {
+            (true, _) => "good",
+            (false, true) => "caution",
+            (false, false) => "bad",
+        }
     }
 }
 
@@ -145,6 +161,7 @@ fn view(row: &MethodRow) -> MethodView {
             state: estimate.reached.in_words().to_owned(),
             because: estimate.stopped_because.clone(),
             passes: estimate.pass,
+            excused: row.excused,
         },
         MethodOutcome::Failed { reason } => MethodView {
             number,
@@ -153,6 +170,7 @@ fn view(row: &MethodRow) -> MethodView {
             state: format!("no estimate: {reason}"),
             because: String::new(),
             passes: false,
+            excused: false,
         },
     }
 }

@@ -16,16 +16,25 @@ pub(super) fn passed(result: &ComparisonResult) -> (usize, usize) {
     (held().filter(|row| row.outcome.passes()).count(), held().count())
 }
 
-/// Returns the end of a sentence on the methods that estimate another quantity than least squares, to follow
-/// a statement about the other methods; empty if there are none.
+/// Returns the end of a sentence on the methods that estimate another quantity than least squares and on weak
+/// baselines, to follow a statement about the other methods; empty if there are none.
 #[must_use]
 pub fn beside_least_squares(result: &ComparisonResult) -> String {
     let names: Vec<String> = result.of_their_own().map(|row| in_a_sentence(&row.title)).collect();
-    match names.len() {
+    let own = match names.len() {
         0 => String::new(),
         1 => format!("; {} estimates something else", listed(&names)),
         _ => format!("; {} estimate something else", listed(&names)),
-    }
+    };
+    let excused = result.excused().filter_map(|row| Some((row, row.outcome.estimate()?)));
+    let excused = excused.map(|(row, found)| {
+        format!(
+            "; {}, a weak baseline with a fixed number of steps, is {} off, which does not count",
+            in_a_sentence(&row.title),
+            format::percent(found.worst_error_percent)
+        )
+    });
+    std::iter::once(own).chain(excused).collect()
 }
 
 pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
@@ -97,7 +106,7 @@ fn agree(passed: usize, count: usize) -> String {
 /// Returns a sentence on the methods that do not pass: outside the tolerance, or without an estimate.
 fn shortfalls(result: &ComparisonResult) -> String {
     let outside: Vec<String> = estimates(result)
-        .filter(|(_, estimate)| !estimate.pass)
+        .filter(|(row, estimate)| !estimate.pass && !row.excused)
         .map(|(row, estimate)| {
             let title = in_a_sentence(&row.title);
             let error = estimate.worst_error_percent;
@@ -254,6 +263,21 @@ mod tests {
         assert!(text.starts_with("All 20 methods agree"), "{text}");
         assert!(text.contains(&format!("; {title} estimates something else.")), "{text}");
         assert_eq!(passed(&result), (20, 20));
+    }
+
+    #[test]
+    fn a_weak_baseline_that_used_up_its_steps_does_not_count() {
+        let mut result = sample::passing();
+        let row = result.results.iter_mut().find(|row| row.id == "gradient-descent").unwrap();
+        let MethodOutcome::Estimate(found) = &mut row.outcome else { panic!() };
+        (row.excused, found.pass, found.worst_error_percent) = (true, false, 4.9);
+        let (tone, _, text) = of(&result);
+        assert_eq!((tone, passed(&result)), (Tone::Good, (20, 20)));
+        assert!(
+            text.contains("; gradient descent, a weak baseline with a fixed number of steps, is 4.9 % off,"),
+            "{text}"
+        );
+        assert!(!text.contains("outside"), "{text}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use estimator::Ablation;
 use record::two_digits;
 use report::format;
 use results::{
-    ComparisonResult, DataSummary, EstimationResult, Family, MethodOutcome, MethodRow, OracleSummary,
+    ComparisonResult, DataSummary, EstimationResult, Family, MethodOutcome, MethodRow, OracleSummary, Origin,
     PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
@@ -53,15 +53,24 @@ fn headline(result: &EstimationResult) -> String {
     // A method that states no error has none shown.
     let error = result.estimate.zeta_std_error.unwrap_or_default();
     format!(
-        "damping ratio ζ = {}\n{} on {} ({} record): {verdict} least squares to {} %; {whose} {} % from that of the closed \
+        "damping ratio ζ = {}\n{} on {} ({}): {verdict} least squares to {} %; {whose} {} % from that of the closed \
          form",
         ratio(result.estimate.zeta, error),
         result.estimator_title,
         result.data.path,
-        result.data.origin.name(),
+        origin(&result.data),
         result.tolerance_percent,
         two_digits(result.worst_error_percent),
     )
+}
+
+/// Describes the origin of a record.
+fn origin(data: &DataSummary) -> &'static str {
+    match data.origin {
+        Origin::Measured => "measured record",
+        Origin::Simulated => "simulated record",
+        Origin::Unstated => "origin not stated",
+    }
 }
 
 fn numbers(result: &EstimationResult) -> String {
@@ -139,11 +148,11 @@ fn comparison_headline(result: &ComparisonResult) -> String {
         count => format!("seeds {} to {}", result.seed, result.seed + count - 1),
     };
     format!(
-        "damping ratio ζ = {}\n{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
+        "damping ratio ζ = {}\n{passed} of {count} methods on {} ({}) solve least squares to {} %{verdict}; at most {} % from the closed \
          form{}, {seeds}, {:.1} s",
         ratio(result.oracle.zeta, result.oracle.zeta_std_error),
         result.data.path,
-        result.data.origin.name(),
+        origin(&result.data),
         result.tolerance_percent,
         two_digits(result.max_error_percent),
         report::beside_least_squares(result),
@@ -216,7 +225,15 @@ fn methods(result: &ComparisonResult) -> String {
                     found.steps.to_string(),
                     found.parameters.to_string(),
                     format!("{:.3}", found.seconds),
-                    format!("{}{}", found.reached.in_words(), if found.pass { "" } else { ", FAILS" }),
+                    format!(
+                        "{}{}",
+                        found.reached.in_words(),
+                        match (found.pass, row.excused) {
+                            (true, _) => "",
+                            (false, true) => ", does not count",
+                            (false, false) => ", FAILS",
+                        }
+                    ),
                 ]),
                 MethodOutcome::Failed { reason } => {
                     cells.extend(std::iter::repeat_n(String::new(), 9));
