@@ -20,7 +20,7 @@ fn every_method_agrees_on_the_shipped_record() {
     assert_eq!(result["data"]["origin"], "simulated");
     let numbers: Vec<u64> = rows(&result).iter().map(|row| row["number"].as_u64().unwrap()).collect();
     assert!(numbers.is_sorted(), "{numbers:?}");
-    for file in ["report.html", "tables.md", "config.toml", "envelope.csv", "environment.json"] {
+    for file in ["report.html", "tables.md", "table.tex", "config.toml", "envelope.csv", "environment.json"] {
         assert!(folder.path().join(file).is_file(), "{file}");
     }
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();

@@ -23,7 +23,7 @@ use crate::remarks::is_believed;
 use crate::tables::Fact;
 use crate::{ReportError, RunTexts};
 
-pub(crate) use markdown::markdown;
+pub(crate) use markdown::{latex, markdown};
 use methods::MethodTable;
 pub use methods::{ABLATION_READING, ablation_cell};
 use parts::WordTable;

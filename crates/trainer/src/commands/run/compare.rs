@@ -16,7 +16,7 @@ use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use experiment::{Claims, Comparison};
 use rayon::prelude::*;
-use report::comparison_markdown;
+use report::{comparison_latex, comparison_markdown};
 use results::{
     AblationRow, ComparisonResult, Derived, Failure, MethodEstimate, MethodOutcome, MethodRow, RESULT_SCHEMA,
     Reached, SeedRow,
@@ -263,6 +263,7 @@ fn keep(run: &Run<'_>, result: &ComparisonResult, interrupted: bool) -> Result<(
     let text = serde_json::to_string(result)
         .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
     folder.write("tables.md", comparison_markdown(&text)?.as_bytes())?;
+    folder.write("table.tex", comparison_latex(&text)?.as_bytes())?;
     write_report(folder)?;
     end(folder, interrupted, run.output.quiet, &json!({ "pass": result.pass }))
 }
