@@ -67,10 +67,18 @@ pub(super) fn short_label(table: &RunTable, row: &RunTableRow, wanted: &dyn Fn(&
     if label.chars().count() <= LONGEST_LABEL {
         return label;
     }
-    let keys = table.columns.iter().filter(|key| wanted(key));
-    let values = keys.filter_map(|key| row.settings.get(key)).map(|value| ended(shown(value)));
+    let values = settings(table)
+        .filter(|key| wanted(key))
+        .filter_map(|key| row.settings.get(key))
+        .map(|value| ended(shown(value)));
     let method = is_shown(table, row).then(|| row.estimator.clone());
     method.into_iter().chain(values).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns the columns that hold settings: the measure of a search is a result.
+pub(super) fn settings(table: &RunTable) -> impl Iterator<Item = &str> {
+    let measure = table.search.as_ref().map(|search| search.measure.as_str());
+    table.columns.iter().map(String::as_str).filter(move |key| Some(*key) != measure)
 }
 
 /// Returns `true` if the method of a row is part of its label: the runs differ in it, or in nothing else.
@@ -85,7 +93,7 @@ fn parts(
     shape: &dyn Fn(String) -> String,
 ) -> String {
     let mut parts: Vec<String> = is_shown(table, row).then(|| row.estimator.clone()).into_iter().collect();
-    for key in table.columns.iter().filter(|key| wanted(key)) {
+    for key in settings(table).filter(|key| wanted(key)) {
         if let Some(value) = row.settings.get(key) {
             parts.push(format!("{} = {}", short_key(table, key), shape(shown(value))));
         }

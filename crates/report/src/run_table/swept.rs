@@ -5,7 +5,7 @@ use scoring::median;
 use serde_json::Value;
 
 use super::cells::{short_key, short_name, shown};
-use super::figures::{drawn, figure as rows_figure, short_label};
+use super::figures::{drawn, figure as rows_figure, settings, short_label};
 use crate::figures::{Figure, csv, figure as plot_figure, number};
 use crate::plot::{Axis, BREAK, DotRow, DotRows, Hue, Mark, Plot, Series};
 use crate::tables::anchor;
@@ -20,9 +20,29 @@ const DECADES: f64 = 30.0;
 /// Number by which the runs are compared.
 struct Metric<'a> {
     label: String,
-    of: Box<dyn Fn(&RunTableRow) -> Option<f64> + 'a>,
+    of: Of<'a>,
     /// `true` if larger values are better.
     maximize: bool,
+}
+
+/// Place of a metric in a row.
+enum Of<'a> {
+    /// The measure of a search, by its name.
+    Measure(&'a str),
+    /// The error of learners.
+    Validation,
+    /// The distance from the reference.
+    Distance,
+}
+
+impl Metric<'_> {
+    fn of(&self, row: &RunTableRow) -> Option<f64> {
+        match self.of {
+            Of::Measure(name) => row.settings.get(name)?.as_f64(),
+            Of::Validation => row.learned.as_ref()?.validation_over_noise,
+            Of::Distance => row.error_percent.map(drawn),
+        }
+    }
 }
 
 /// A run with its value of a key and its metric.
@@ -34,10 +54,7 @@ struct Point<'a> {
 
 pub(super) fn figures(table: &RunTable) -> Vec<Figure> {
     let metric = metric(table);
-    let is_distance = table.search.is_none() && table.rows.iter().all(|row| row.learned.is_none());
-    let measure = table.search.as_ref().map(|search| search.measure.as_str());
-    let keys = table.columns.iter().map(String::as_str);
-    let keys = std::iter::once(METHOD).chain(keys.filter(|key| *key != "seed" && Some(*key) != measure));
+    let keys = std::iter::once(METHOD).chain(settings(table).filter(|key| *key != "seed"));
     let varied: Vec<(&str, Vec<Point<'_>>)> =
         keys.map(|key| (key, points(table, &metric, key))).filter(|(_, points)| differ(points)).collect();
     let is_only = varied.len() == 1;
@@ -47,7 +64,7 @@ pub(super) fn figures(table: &RunTable) -> Vec<Figure> {
             match points.iter().map(|point| point.value.as_f64()).collect::<Option<Vec<f64>>>() {
                 Some(values) => numeric(table, &metric, key, points, &values),
                 // The plot by setting shows the same.
-                None if is_only && is_distance => None,
+                None if is_only && matches!(metric.of, Of::Distance) => None,
                 None => words(table, &metric, key, points),
             }
         })
@@ -60,17 +77,15 @@ const METHOD: &str = "method";
 
 /// Returns the measure of a search, else the error of learners, else the distance from the reference.
 fn metric(table: &RunTable) -> Metric<'_> {
-    if let Some(search) = &table.search {
-        let of = |row: &RunTableRow| row.settings.get(&search.measure).and_then(Value::as_f64);
-        return Metric { label: search.measure.clone(), of: Box::new(of), maximize: search.maximize };
-    }
-    let (label, of): (_, fn(&RunTableRow) -> Option<f64>) =
-        if table.rows.iter().any(|row| row.learned.is_some()) {
-            ("validation error (× noise)", |row| row.learned.as_ref()?.validation_over_noise)
-        } else {
-            ("distance from the reference in ζ (%)", |row| row.error_percent.map(drawn))
-        };
-    Metric { label: label.to_owned(), of: Box::new(of), maximize: false }
+    let (label, of) = match &table.search {
+        Some(search) => (search.measure.as_str(), Of::Measure(&search.measure)),
+        None if table.rows.iter().any(|row| row.learned.is_some()) => {
+            ("validation error (× noise)", Of::Validation)
+        }
+        None => ("distance from the reference in ζ (%)", Of::Distance),
+    };
+    let maximize = table.search.as_ref().is_some_and(|search| search.maximize);
+    Metric { label: label.to_owned(), of, maximize }
 }
 
 /// Returns the runs that have a value of a key and a metric.
@@ -79,7 +94,7 @@ fn points<'a>(table: &'a RunTable, metric: &Metric<'_>, key: &str) -> Vec<Point<
         METHOD => (!row.estimator.is_empty()).then(|| row.estimator.clone().into()),
         key => row.settings.get(key).cloned(),
     };
-    let point = |row| Some(Point { row, value: value(row)?, metric: (metric.of)(row)? });
+    let point = |row| Some(Point { row, value: value(row)?, metric: metric.of(row)? });
     table.rows.iter().filter_map(point).filter(|point| point.metric.is_finite()).collect()
 }
 
@@ -104,6 +119,7 @@ fn numeric(
     let placed: Vec<(f64, &Point<'_>)> = values.iter().copied().zip(points).collect();
     let runs = placed.iter().flat_map(|(x, point)| [(*x, point.metric), BREAK]).collect();
     let mut series = lines(table, key, &placed);
+    let has_lines = !series.is_empty();
     series.push(Series { label: "a run".into(), hue: Hue::Data, mark: Mark::Dots, points: runs });
     let plot = Plot {
         x: axis(key, values.iter().copied()),
@@ -112,9 +128,13 @@ fn numeric(
         shaded: vec![],
     };
     let title = title(table, metric, key, "against");
-    let explanation = "Each dot is a run. Lines join the medians over the runs that differ in nothing but their \
-                       seed, or in all other keys if these have more combinations than a plot has room for. \
-                       Points of a random search have no lines.";
+    let explanation = match has_lines {
+        true => {
+            "Each dot is a run. Lines join the medians over the runs that differ in nothing but their seed, or in all \
+             other keys if these have more combinations than a plot has room for."
+        }
+        false => "Each dot is a run.",
+    };
     plot_figure(id(key), title, explanation, &plot, data(table, key, points))
 }
 
