@@ -1,12 +1,10 @@
-//! The plots of many runs: a metric by each varied key, distance from the reference by setting, damping ratio
-//! by run.
+//! The plots of many runs: distance from the reference by setting, damping ratio by run.
 
 use std::borrow::Cow;
 
 use results::{RunTable, RunTableRow};
 
 use super::cells::{short_key, short_name, shown};
-use super::swept;
 use crate::figures::{Figure, csv, number};
 use crate::format;
 use crate::plot::{Axis, DotRow, DotRows};
@@ -22,7 +20,7 @@ const MOST_LETTERS: usize = 16;
 const LONGEST_LABEL: usize = 40;
 
 pub(super) fn figures(table: &RunTable) -> Vec<Figure> {
-    swept::figures(table).into_iter().chain(gaps(table)).chain(ratios(table)).collect()
+    [gaps(table), ratios(table)].into_iter().flatten().collect()
 }
 
 /// Runs that differ in nothing but their seed.

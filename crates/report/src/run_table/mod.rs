@@ -66,7 +66,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
             )
         },
         axes: &table.axes,
-        figures: figures::figures(table),
+        figures: swept::figures(table).into_iter().chain(figures::figures(table)).collect(),
         reading: reading(table),
         shortened: if shown < table.rows.len() {
             format!("The first {shown} of {} rows; table.csv has all.", table.rows.len())
