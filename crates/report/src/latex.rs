@@ -76,7 +76,6 @@ fn symbol(letter: char) -> Option<&'static str> {
         '|' => "$|$",
         '[' => "{[}",
         ']' => "{]}",
-        '"' => "\\textquotedbl{}",
         'ζ' => "$\\zeta$",
         'λ' => "$\\lambda$",
         'ω' => "$\\omega$",
@@ -91,7 +90,7 @@ fn symbol(letter: char) -> Option<&'static str> {
         '…' => "\\ldots{}",
         '’' => "'",
         '“' => "``",
-        '”' => "''",
+        '"' | '”' => "''",
         _ => return None,
     })
 }

@@ -4,7 +4,7 @@ use results::{RunTable, RunTableRow, SweepSampler};
 use scoring::median;
 use serde_json::Value;
 
-use super::cells::{short_key, short_name, shown};
+use super::cells::{has_data_sets, short_key, short_name, shown};
 use super::figures::{drawn, figure as rows_figure, settings, short_label};
 use crate::figures::{Figure, csv, figure as plot_figure, number};
 use crate::plot::{Axis, BREAK, DotRow, DotRows, Hue, Mark, Plot, Series};
@@ -138,13 +138,20 @@ fn numeric(
     plot_figure(id(key), title, explanation, &plot, data(table, key, points))
 }
 
-/// Returns the medians over equal values of a key: a line for each combination of the other keys, or a single
-/// line if there are too many of them. A search draws its points: it has no equal values.
+/// Returns the medians over equal values of a key: a line for each combination of the other keys and data set, or a
+/// single line if there are too many of them. A search draws its points: it has no equal values.
 fn lines(table: &RunTable, key: &str, placed: &[(f64, &Point<'_>)]) -> Vec<Series> {
     if table.search.as_ref().is_some_and(|search| search.sampler != SweepSampler::Grid) {
         return Vec::new();
     }
-    let others = |row: &RunTableRow| short_label(table, row, &|other| other != key && other != "seed");
+    let has_data_sets = has_data_sets(table);
+    let others = |row: &RunTableRow| {
+        let label = short_label(table, row, &|other| other != key && other != "seed");
+        match row.learned.as_ref().filter(|_| has_data_sets) {
+            Some(of) => format!("{label}, {}", of.problem),
+            None => label,
+        }
+    };
     let mut names: Vec<String> = Vec::new();
     for (_, point) in placed {
         let name = others(point.row);
