@@ -34,6 +34,7 @@ pub(super) struct Number {
     cell: fn(&RunTableRow) -> Option<String>,
 }
 
+const DISTANCE: &str = "distance from reference, %";
 const WORST: &str = "worst distance, %";
 /// Title of the column that tells data sets apart.
 pub(super) const DATA_SET: &str = "data set";
@@ -44,7 +45,7 @@ const NUMBERS: [Number; 16] = [
     Number { title: "± of ζ", cell: |row| row.zeta_std_error.map(|error| significant(error, 2)) },
     Number { title: "95 % interval", cell: |row| row.zeta_interval_95.map(interval) },
     Number { title: "reference ζ", cell: |row| row.oracle_zeta.map(|zeta| significant(zeta, 8)) },
-    Number { title: "distance from reference, %", cell: |row| row.error_percent.map(gap) },
+    Number { title: DISTANCE, cell: |row| row.error_percent.map(gap) },
     Number { title: WORST, cell: |row| row.worst_error_percent.map(gap) },
     Number { title: DATA_SET, cell: |row| row.learned.as_ref().map(|of| of.problem.clone()) },
     Number {
@@ -90,7 +91,10 @@ pub(super) fn has_data_sets(table: &RunTable) -> bool {
 /// Returns the columns after the settings that tell something about any of the rows.
 pub(super) fn numbers(table: &RunTable) -> Vec<&'static Number> {
     let rows = || table.rows.iter().filter(|row| has_numbers(row));
+    let is_measure = table.search.as_ref().is_some_and(|search| search.measure == "error_percent");
     let tells = |number: &&Number| match number.title {
+        // The column of a search's measure has it already.
+        DISTANCE if is_measure => false,
         WORST => rows().any(|row| row.worst_error_percent != row.error_percent),
         DATA_SET => has_data_sets(table),
         _ => rows().any(|row| (number.cell)(row).is_some()),

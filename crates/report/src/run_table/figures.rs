@@ -17,7 +17,7 @@ const MOST_ROWS: usize = 200;
 /// Letters of a value beside a row.
 const MOST_LETTERS: usize = 16;
 /// Letters of a label beside a row, beyond which its keys are left out in favor of their values.
-const LONGEST_LABEL: usize = 40;
+const LONGEST_LABEL: usize = 48;
 
 pub(super) fn figures(table: &RunTable) -> Vec<Figure> {
     [gaps(table), ratios(table)].into_iter().flatten().collect()
