@@ -20,7 +20,7 @@ fn every_method_agrees_on_the_shipped_record() {
     assert_eq!(result["data"]["origin"], "simulated");
     let numbers: Vec<u64> = rows(&result).iter().map(|row| row["number"].as_u64().unwrap()).collect();
     assert!(numbers.is_sorted(), "{numbers:?}");
-    for file in ["report.html", "tables.md", "config.toml", "envelope.csv", "environment.json"] {
+    for file in ["report.html", "tables.md", "table.tex", "config.toml", "envelope.csv", "environment.json"] {
         assert!(folder.path().join(file).is_file(), "{file}");
     }
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
@@ -33,6 +33,34 @@ fn every_method_agrees_on_the_shipped_record() {
     let again = trainer(&["report", folder.path().to_str().unwrap()]);
     assert_eq!(again.status.code(), Some(0));
     assert_eq!(std::fs::read_to_string(folder.path().join("report.html")).unwrap(), page);
+}
+
+/// Of 150 s, plain gradient descent learns little in its 10,000 steps: that says nothing about the record.
+#[test]
+fn a_weak_baseline_does_not_fail_a_record_of_ones_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("long.csv");
+    let sample = |k: u32| {
+        let time = f64::from(k) * 0.02;
+        format!("{time:.2},{:.9}\n", 0.5 * (-0.02 * time).exp() * (5.65 * time).cos())
+    };
+    std::fs::write(&file, "t,theta\n".to_owned() + &(0..7_500).map(sample).collect::<String>()).unwrap();
+    let path = format!("data.path={}", file.display());
+    let compare = |more: &str| {
+        let methods = "compare.methods=gradient-descent,ols";
+        result(&["configs/compare.toml", &path, "data.value=theta", "data.unit=rad", methods, more])
+    };
+    let (code, found, folder) = compare("seed=0");
+    assert_eq!(
+        (code, &found["pass"], &found["results"][1]["excused"]),
+        (0, &true.into(), &true.into()),
+        "{found}"
+    );
+    assert!(number(&found, "/results/1/outcome/estimate/error_percent") > 1.0, "{found}");
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("does not count") && page.contains("data.origin"));
+    // A miss counts if the configuration took the steps away.
+    assert_eq!(compare("fit.max_steps=100").0, 1);
 }
 
 #[test]

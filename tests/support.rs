@@ -65,7 +65,7 @@ pub(crate) fn number(value: &Value, path: &str) -> f64 {
 
 /// Files that depend on the time or the machine.
 const OF_THE_MOMENT: &[&str] =
-    &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
+    &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md", "table.tex"];
 
 /// Returns every file of a run as text or digest, except those that depend on the time or the machine;
 /// durations are removed from the others.

@@ -125,7 +125,7 @@ fn every_combination_becomes_an_ordinary_run() {
     let overrides: Vec<&str> =
         table["rows"].as_array().unwrap().iter().map(|row| row["estimator"].as_str().unwrap()).collect();
     assert_eq!(overrides, ["ols", "ols", "ols", "lstm", "lstm", "lstm"]);
-    for name in ["report.html", "table.md", "config.toml", "environment.json", "result.json"] {
+    for name in ["report.html", "table.md", "table.tex", "config.toml", "environment.json", "result.json"] {
         assert!(Path::new(&out).join(name).is_file(), "{name}");
     }
     let csv = std::fs::read_to_string(Path::new(&out).join("table.csv")).unwrap();

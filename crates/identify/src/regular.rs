@@ -28,14 +28,6 @@ pub fn regular_part(record: &Record, clock: &Clock) -> Option<[f64; 2]> {
     let (windows, noise) = SamplesPipeline::DEFAULT.clear_windows(record, clock)?;
     let steps: Vec<Step> = windows.windows(2).filter_map(|pair| Step::new(pair, noise)).collect();
     let uneven: Vec<bool> = (0..steps.len()).map(|at| is_uneven(&steps, at)).collect();
-    eprintln!(
-        "{:?}",
-        steps
-            .iter()
-            .zip(&uneven)
-            .map(|(s, u)| (s.from, s.phase, s.logarithm, s.std_error, u))
-            .collect::<Vec<_>>()
-    );
     let mut parts = vec![(0, 0)];
     for (at, is_uneven) in uneven.iter().enumerate() {
         let last = parts.last_mut()?;

@@ -212,7 +212,9 @@
     const canvas = figure.querySelector(".canvas");
     canvas.append(place);
     figure.classList.add("live");
-    const size = () => ({ width: Math.max(200, place.clientWidth), height: place.clientWidth < 560 ? 290 : 400 });
+    // The plot at the top leaves room on the first screen for what is below it.
+    const tall = figure.closest(".lead") ? 290 : 400;
+    const size = () => ({ width: Math.max(200, place.clientWidth), height: place.clientWidth < 560 ? 290 : tall });
     const values = data(spec);
     const [low, high] = [values[0][0], values[0][values[0].length - 1]];
     let hover = () => {};

@@ -37,6 +37,12 @@ pub(crate) fn figures(run: &Run) -> Vec<Figure> {
     [envelope(run), whole].into_iter().chain(others).flatten().collect()
 }
 
+/// Takes the first plot for the top of the page, below the verdict.
+pub(crate) fn lead(figures: &mut Vec<Figure>) -> Vec<Figure> {
+    let first = figures.len().min(1);
+    figures.drain(..first).collect()
+}
+
 fn envelope(run: &Run) -> Option<Figure> {
     let rows = &run.envelope;
     let plot = Plot {

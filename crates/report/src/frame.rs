@@ -20,6 +20,10 @@ pub(crate) struct Frame<'a> {
     pub(crate) kicker: &'static str,
     pub(crate) verdict: Verdict,
     pub(crate) origin: Origin,
+    /// Reason not to believe the verdict, before it.
+    pub(crate) doubt: Option<&'a str>,
+    /// Remark on the table of pipelines.
+    pub(crate) differing: Option<&'a str>,
     pub(crate) warnings: Vec<String>,
     /// Next steps, a sentence or two each, directly below the verdict.
     pub(crate) next: Vec<String>,
@@ -31,10 +35,12 @@ pub(crate) struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// Returns the frame with a sentence on disagreeing pipelines or clocks before all other warnings.
-    pub(crate) fn disagreeing(mut self, disagreement: Option<&String>) -> Self {
-        self.warnings.splice(0..0, disagreement.cloned());
-        self
+    /// Returns the frame with a sentence on pipelines or clocks that give another answer: before the verdict
+    /// if one of them is to be believed, else beside the table of pipelines.
+    pub(crate) fn disagreeing(self, disagreement: Option<&'a String>, is_believed: bool) -> Self {
+        let said = disagreement.map(String::as_str);
+        let (doubt, differing) = if is_believed { (None, said) } else { (said, None) };
+        Self { doubt, differing, ..self }
     }
 
     /// Creates a frame without warnings, next steps, pipelines, data and findings; its files are those of a
@@ -46,6 +52,8 @@ impl<'a> Frame<'a> {
             kicker,
             verdict,
             origin,
+            doubt: None,
+            differing: None,
             warnings: Vec::new(),
             next: Vec::new(),
             pipelines: Vec::new(),

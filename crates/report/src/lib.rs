@@ -8,7 +8,8 @@
 //! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on held-out peaks,
 //! [`render_diagnosis`] the gap between a simulator and records, [`render_trials`] the accuracy of a
 //! diagnosis, [`render_run_table`] the runs of a sweep. [`comparison_markdown`] and [`prediction_markdown`]
-//! return the tables of a comparison and of a prediction study as Markdown.
+//! return the tables of a comparison and of a prediction study as Markdown, [`comparison_latex`] those of a
+//! comparison as LaTeX.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -22,6 +23,7 @@ mod fleet;
 pub mod format;
 mod frame;
 pub mod glossary;
+mod latex;
 mod learning;
 mod modes;
 mod page;
@@ -48,8 +50,13 @@ pub use classes::{
 pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
 pub use error::ReportError;
 pub use modes::{mode_words, sentence as modes_sentence};
-pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
-pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
+pub use remarks::{
+    bar_state, is_believed, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings,
+};
+pub use run_table::{
+    csv as run_table_csv, latex as run_table_latex, markdown as run_table_markdown,
+    text_cells as run_table_text,
+};
 pub use texts::RunTexts;
 pub use trials::class_rows;
 pub use verdict::in_a_sentence;
@@ -147,4 +154,13 @@ pub fn prediction_markdown(result: &str) -> Result<String, ReportError> {
 /// As [`render`], for that file.
 pub fn comparison_markdown(result: &str) -> Result<String, ReportError> {
     Ok(comparison::markdown(&parse::comparison_result(result)?))
+}
+
+/// Returns the methods of a comparison as LaTeX tables with the rules of booktabs, from its `result.json`.
+///
+/// # Errors
+///
+/// As [`render`], for that file.
+pub fn comparison_latex(result: &str) -> Result<String, ReportError> {
+    Ok(comparison::latex(&parse::comparison_result(result)?))
 }

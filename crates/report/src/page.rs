@@ -2,9 +2,10 @@
 
 use askama::Template;
 
-use crate::figures::{Figure, figures};
+use crate::figures::{Figure, figures, lead};
 use crate::frame::{Frame, finish};
 use crate::parse::Run;
+use crate::remarks::is_believed;
 use crate::tables::{self, ComparisonRow, Fact, SeedView};
 use crate::verdict;
 use crate::{ReportError, RunTexts};
@@ -18,6 +19,8 @@ struct RunPage<'a> {
     /// Titles and facts.
     cards: Vec<(&'static str, Vec<Fact>)>,
     seeds: Vec<SeedView>,
+    /// The plot below the verdict, if there is one.
+    lead: Vec<Figure>,
     figures: Vec<Figure>,
     has_trace: bool,
 }
@@ -32,7 +35,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
         &result.oracle,
         &result.pipelines,
     )
-    .disagreeing(result.disagreement.as_ref());
+    .disagreeing(result.disagreement.as_ref(), is_believed(&result.pipelines, &result.data));
+    let mut figures = figures(run);
     let page = RunPage {
         frame: Frame { next: verdict::next(result), ..frame },
         estimator: &result.estimator_title,
@@ -46,7 +50,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
         .chain(result.truth.as_ref().map(|known| ("Truth of the simulated record", tables::truth(known))))
         .collect(),
         seeds: tables::seeds(&result.seeds),
-        figures: figures(run),
+        lead: lead(&mut figures),
+        figures,
         has_trace: !run.trace.is_empty(),
     };
     finish(&page)
@@ -59,12 +64,15 @@ mod tests {
     use crate::scripts;
 
     #[test]
-    fn pipelines_that_disagree_are_the_first_warning() {
+    fn pipelines_that_disagree_come_before_the_answer_only_if_another_is_to_be_believed() {
         let mut sample = Sample::new();
-        sample.result.disagreement = Some("The paper pipeline puts the frequency 3.7 % away.".into());
-        let page = sample.render().unwrap();
-        let told = page.find("3.7 % away").unwrap();
-        assert!(told < page.find("Key numbers</h2>").unwrap());
+        sample.result.disagreement = Some("The other way gives 3.7.".into());
+        let place = |sample: &Sample, what: &str| sample.render().unwrap().find(what).unwrap();
+        assert!(place(&sample, "other way gives") < place(&sample, "class=\"verdict"));
+        for row in &mut sample.result.pipelines {
+            row.in_force = row.pipeline == "recommended" && row.clock == "uniform-index";
+        }
+        assert!(place(&sample, "other way gives") > place(&sample, "id=\"pipelines\""));
     }
 
     #[test]

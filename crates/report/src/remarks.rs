@@ -1,6 +1,8 @@
 //! Sentences shared by a page and the terminal, each made by one function.
 
-use results::{BarRow, DataSummary, DiagnosisResult, OracleSummary, TruthComparison, VerdictStatus};
+use results::{
+    BarRow, DataSummary, DiagnosisResult, OracleSummary, PipelineRow, TruthComparison, VerdictStatus,
+};
 
 use crate::format;
 
@@ -89,6 +91,15 @@ pub fn warnings(reference: &OracleSummary) -> Vec<String> {
     )]
 }
 
+/// Returns `true` if the pipeline and the clock in force are those to believe. Others that give a different
+/// answer then leave this answer as it is, and are a remark below it; else they come before it.
+#[must_use]
+pub fn is_believed(pipelines: &[PipelineRow], data: &DataSummary) -> bool {
+    pipelines
+        .iter()
+        .any(|row| row.in_force && row.pipeline == "recommended" && row.clock == data.believed_clock)
+}
+
 /// Returns the state of a bar in words: `within chance` only if the interval contains the bar.
 #[must_use]
 pub fn bar_state(row: &BarRow) -> &str {
@@ -139,6 +150,18 @@ mod tests {
         data.clock_reason = "set in the configuration".into();
         let text = noticed(&data).join(" ");
         assert!(text.ends_with("but the host clock is in force (set in the configuration)."), "{text}");
+    }
+
+    #[test]
+    fn the_recommended_pipeline_is_believed_on_the_believed_clock_alone() {
+        let mut result = Sample::new().result;
+        assert!(!is_believed(&result.pipelines, &result.data));
+        for row in &mut result.pipelines {
+            row.in_force = row.pipeline == "recommended" && row.clock == "uniform-index";
+        }
+        assert!(is_believed(&result.pipelines, &result.data));
+        result.data.believed_clock = "host".into();
+        assert!(!is_believed(&result.pipelines, &result.data));
     }
 
     #[test]

@@ -180,7 +180,7 @@ pub(crate) fn origin_of_all(
     let stated: Vec<results::Origin> = stated.collect();
     let differ = stated.iter().any(|other| Some(other) != stated.first());
     match apart {
-        Some(note) if differ => Origin { class: "unstated", label: "Records of different origins", note },
+        Some(note) if differ => Origin { class: "mixed", label: "Records of different origins", note },
         _ => origin(results::Origin::shared(stated)),
     }
 }
@@ -206,8 +206,8 @@ pub(crate) fn origin(stated: results::Origin) -> Origin {
         results::Origin::Unstated => Origin {
             class: "unstated",
             label: "Origin not stated",
-            note: "Nobody has said whether this record was measured or simulated: do not cite it \
-                   as a measurement.",
+            note: "If it was measured, say so: data.origin = \"measured\" in the configuration, or --origin measured \
+                   for trainer diagnose.",
         },
     }
 }
@@ -320,5 +320,6 @@ mod tests {
         assert_eq!(origin(results::Origin::Measured).class, "measured");
         assert_eq!(origin(results::Origin::Simulated).class, "simulated");
         assert_eq!(origin(results::Origin::Unstated).class, "unstated");
+        assert!(origin(results::Origin::Unstated).note.contains("data.origin = \"measured\""));
     }
 }

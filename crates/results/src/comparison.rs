@@ -31,12 +31,12 @@ pub struct ComparisonResult {
     /// Fits of the same line by third-party libraries: a second opinion on the reference.
     #[serde(default)]
     pub libraries: Vec<MethodRow>,
-    /// Largest error over methods and seeds, in percent.
+    /// Largest error over methods and seeds whose error counts, in percent.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub max_error_percent: f64,
     /// Largest error that passes, in percent.
     pub tolerance_percent: f64,
-    /// `true` if every method gave an estimate within the tolerance.
+    /// `true` if every method whose error counts gave an estimate within the tolerance.
     pub pass: bool,
     /// Wall time of all fits together, in seconds.
     pub seconds: f64,
@@ -57,14 +57,19 @@ pub struct ComparisonResult {
 }
 
 impl ComparisonResult {
-    /// Returns the methods whose value is compared with least squares.
+    /// Returns the methods whose distance from least squares counts.
     pub fn held_to_least_squares(&self) -> impl Iterator<Item = &MethodRow> {
         self.results.iter().filter(|row| row.is_held_to_least_squares())
     }
 
     /// Returns the methods that estimate another quantity, so that a distance from least squares is no error.
     pub fn of_their_own(&self) -> impl Iterator<Item = &MethodRow> {
-        self.results.iter().filter(|row| !row.is_held_to_least_squares())
+        self.results.iter().filter(|row| row.estimand == Estimand::Own)
+    }
+
+    /// Returns the weak baselines whose distance from least squares does not count.
+    pub fn excused(&self) -> impl Iterator<Item = &MethodRow> {
+        self.results.iter().filter(|row| row.excused)
     }
 }
 
@@ -111,16 +116,20 @@ pub struct MethodRow {
     /// Relation of the method's converged value to least squares.
     #[serde(default)]
     pub estimand: Estimand,
+    /// `true` if the distance from least squares does not count: a deliberately weak baseline has used up a
+    /// number of steps that is fixed whatever the record.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub excused: bool,
     /// Estimate, or the reason for a missing one.
     pub outcome: MethodOutcome,
 }
 
 impl MethodRow {
-    /// Returns `true` if the method's value is compared with least squares. If the method estimates another
-    /// quantity, a distance from least squares is no error.
+    /// Returns `true` if the method's distance from least squares counts. If the method estimates another
+    /// quantity, the distance is no error; if it is an excused baseline, the error tells nothing new.
     #[must_use]
     pub fn is_held_to_least_squares(&self) -> bool {
-        self.estimand != Estimand::Own
+        self.estimand != Estimand::Own && !self.excused
     }
 }
 

@@ -67,8 +67,8 @@ pub use search::{
 };
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 pub use sweep::{
-    RunState, RunTable, RunTableRow, RunTableTask, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine,
-    SweepManifest, SweepRecord, SweepState,
+    LearnedScores, RunState, RunTable, RunTableRow, RunTableTask, SWEEP_SCHEMA, SweepAxis, SweepEnd,
+    SweepLine, SweepManifest, SweepRecord, SweepState,
 };
 pub use trials::{
     AreaRow, BankRow, BarRow, BaselineRow, ClassScores, ClosureStudy, Confusion, FailureRow, InclusionRow,

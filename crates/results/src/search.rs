@@ -120,9 +120,11 @@ pub struct SearchBest {
     pub config: String,
 }
 
-/// Rounds a value to six significant digits, for a sentence.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+/// Formats a value with at most six significant digits, for a sentence; a small one with a power of ten.
+fn rounded(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let is_small = rounded != 0.0 && rounded.abs() < 1e-4;
+    if is_small { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
 impl SearchOutcome {
@@ -153,5 +155,18 @@ impl SearchOutcome {
             words.push_str(warning);
         }
         words
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn a_value_has_six_digits_and_no_row_of_zeros() {
+        assert_eq!(
+            [1.014_961_8, 0.0, 2.5, 3.927_593_2e-8].map(rounded),
+            ["1.01496", "0", "2.5", "3.92759e-8"]
+        );
     }
 }

@@ -145,7 +145,8 @@ pub struct RunTable {
     /// Result of the search, if the sweep searches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SearchOutcome>,
-    /// One row for each run; for a comparison of methods, one row for each method.
+    /// One row for each run; for a comparison of methods, one row for each method; for a learning study, one
+    /// row for each learner and data set.
     pub rows: Vec<RunTableRow>,
     /// Number of runs with a result.
     pub done: usize,
@@ -242,6 +243,28 @@ pub struct RunTableRow {
     pub seconds: Option<f64>,
     /// `true` if every seed is within the tolerance.
     pub pass: Option<bool>,
+    /// Scores of a learner of dynamics; absent in rows of other tasks, and if it learned nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub learned: Option<LearnedScores>,
+}
+
+/// Scores of one learner on one data set of a learning study. Errors that are not finite are `null`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LearnedScores {
+    /// Name of the data set in the configuration.
+    pub problem: String,
+    /// Root mean square error of free runs over the sensor noise, on the validation part.
+    pub validation_over_noise: Option<f64>,
+    /// The same on the test part, which no choice may depend on.
+    pub test_over_noise: Option<f64>,
+    /// Root mean square error of free runs on the test part.
+    pub test_rmse: Option<f64>,
+    /// Unit of that error.
+    pub unit: String,
+    /// Median time until the error on the test part exceeds three times the noise, in seconds.
+    pub horizon_s: Option<f64>,
+    /// Share of the test part's observations inside the stated 95 % band.
+    pub coverage_95: Option<f64>,
 }
 
 impl RunTableRow {
@@ -269,6 +292,7 @@ impl RunTableRow {
             parameters: None,
             seconds: None,
             pass: None,
+            learned: None,
         }
     }
 }

@@ -8,8 +8,8 @@ use crate::sweep::SweepFolder;
 use jiff::Timestamp;
 use results::{
     ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, LearnEnd, LearnKind, LearnResult, LearnRow,
-    MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA, Reached, RigsResult, RunState, RunTableRow,
-    SweepManifest, SweepState, TRIALS_SCHEMA,
+    LearnedScores, MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA, Reached, RigsResult, RunState,
+    RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -267,8 +267,6 @@ fn estimation(result: &EstimationResult) -> Content {
     }
 }
 
-/// Summarizes a learning study as one row, whatever its number of learners: they have no damping ratio to
-/// compare side by side.
 fn learning(result: &LearnResult) -> Content {
     let learners: Vec<&LearnRow> =
         result.results.iter().filter(|row| row.kind == LearnKind::Learner).collect();
@@ -277,7 +275,6 @@ fn learning(result: &LearnResult) -> Content {
         (None, Some(error)) => format!("{} on {}: {error:.2} times the noise", row.id, row.problem),
         (None, None) => format!("{} on {}: {}", row.id, row.problem, row.reached.name().replace('_', " ")),
     };
-    let summary = learners.iter().map(said).collect::<Vec<_>>().join("; ");
     let mut names: Vec<&str> = learners.iter().map(|row| row.id.as_str()).collect();
     names.sort_unstable();
     names.dedup();
@@ -286,23 +283,43 @@ fn learning(result: &LearnResult) -> Content {
         [name] => (*name).to_owned(),
         names => format!("{} learners", names.len()),
     };
-    let row = RunTableRow {
-        task: result.task.clone(),
-        estimator: only.clone(),
-        reason: summary.clone(),
-        parameters: learners.first().filter(|_| learners.len() == 1).map(|row| row.parameters),
-        seconds: Some(result.seconds),
-        ..RunTableRow::without_numbers("", RunState::Done, "")
-    };
     Content {
         task: result.task.clone(),
         estimator: only,
-        summary,
+        summary: learners.iter().map(said).collect::<Vec<_>>().join("; "),
         is_interrupted: result
             .results
             .iter()
             .any(|row| row.reached == LearnEnd::Trained(Reached::Interrupted)),
-        rows: vec![row],
+        rows: learners.iter().map(|row| learner(result, row)).collect(),
+    }
+}
+
+fn learner(result: &LearnResult, row: &LearnRow) -> RunTableRow {
+    let problem = result.problems.iter().find(|problem| problem.id == row.problem);
+    let (test, validation) = (row.test.as_ref(), row.validation.map(|part| part.over_noise));
+    let has_scores = row.failure.is_none() && (test.is_some() || validation.is_some());
+    RunTableRow {
+        task: result.task.clone(),
+        estimator: row.id.clone(),
+        origin: problem.map(|problem| problem.origin),
+        reason: row.failure.clone().unwrap_or_default(),
+        reached: match row.reached {
+            LearnEnd::Trained(reached) => Some(reached),
+            LearnEnd::Failed => None,
+        },
+        parameters: Some(row.parameters),
+        seconds: Some(row.seconds),
+        learned: has_scores.then(|| LearnedScores {
+            problem: row.problem.clone(),
+            validation_over_noise: validation.filter(|error| error.is_finite()),
+            test_over_noise: test.and_then(|test| test.over_noise),
+            test_rmse: test.and_then(|test| test.free_run_rmse),
+            unit: test.map_or_else(String::new, |test| test.unit.clone()),
+            horizon_s: test.map(|test| test.horizon_s),
+            coverage_95: test.and_then(|test| test.coverage_95),
+        }),
+        ..RunTableRow::without_numbers("", RunState::Done, "")
     }
 }
 
@@ -338,7 +355,7 @@ fn method(result: &ComparisonResult, row: &MethodRow) -> RunTableRow {
             steps: Some(found.steps),
             parameters: Some(found.parameters),
             seconds: Some(found.seconds),
-            pass: Some(found.pass),
+            pass: (!row.excused).then_some(found.pass),
             ..shared
         },
     }

@@ -83,7 +83,7 @@ impl Output {
                 .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
             console::result(&json);
         } else if !self.quiet {
-            console::result(&text());
+            console::text(&text());
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The plots of a comparison: the paper's Figure 1, a to c.
+//! The plots of a comparison: the paper's Figure 1, a to c; the one with the answer, c, comes first.
 
 use results::{EnvelopeRow, MethodRow};
 
@@ -11,7 +11,7 @@ use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 const LEAST_PERCENT: f64 = 100.0 * f64::EPSILON;
 
 pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
-    [amplitude(comparison), log_amplitude(comparison), errors(comparison)].into_iter().flatten().collect()
+    [errors(comparison), amplitude(comparison), log_amplitude(comparison)].into_iter().flatten().collect()
 }
 
 fn amplitude(comparison: &Comparison) -> Option<Figure> {
@@ -68,7 +68,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
         extreme_label: "worst seed".into(),
         level: Some(("stated tolerance".into(), result.tolerance_percent)),
     };
-    let title = "(c) Error by method";
+    let title = "Figure 1 (c): error by method";
     let drawing = plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
     let mut notes = Vec::new();
     if errors_of(&result.results).any(|error| error < LEAST_PERCENT) {

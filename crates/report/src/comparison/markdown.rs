@@ -1,13 +1,14 @@
-//! Tables of a comparison as GitHub Markdown.
+//! Tables of a comparison as GitHub Markdown, and those of its methods as LaTeX.
 
 use results::ComparisonResult;
 
 use super::methods::{self, MethodTable, MethodView};
 use super::parts::WordTable;
 use super::{guidelines, oscillation, verdict};
+use crate::latex;
 use crate::remarks::{noticed, warnings};
 use crate::tables::{self, PipelineView};
-use crate::verdict::origin;
+use crate::verdict::{kind, origin};
 
 pub(crate) fn markdown(result: &ComparisonResult) -> String {
     let origin = origin(result.data.origin);
@@ -48,31 +49,59 @@ pub(crate) fn markdown(result: &ComparisonResult) -> String {
     blocks.join("\n\n") + "\n"
 }
 
+/// Columns that a printed page has no room for.
+const SCREEN_ONLY: [&str; 4] = ["digits", "may differ", "at zero, %", "on noise, %"];
+
+/// Returns the tables of the methods as LaTeX.
+pub(crate) fn latex(result: &ComparisonResult) -> String {
+    let record = format!("{} ({})", result.data.path, kind(result.data.origin));
+    let tables = methods::tables(result).into_iter().map(|table| {
+        let columns = method_columns(&table);
+        let is_printed: Vec<bool> = columns.iter().map(|(title, _)| !SCREEN_ONLY.contains(title)).collect();
+        let printed = |cells: Vec<String>| -> Vec<String> {
+            cells.into_iter().zip(&is_printed).filter_map(|(cell, keep)| keep.then_some(cell)).collect()
+        };
+        let rows =
+            table.rows.iter().map(|row| printed(method_cells(row, table.columns.len(), str::to_owned)));
+        let columns: Vec<(&str, bool)> =
+            columns.iter().zip(&is_printed).filter_map(|(column, keep)| keep.then_some(*column)).collect();
+        // LaTeX numbers its tables itself.
+        let title = table.title.split_once(": ").map_or(table.title, |(_, title)| title);
+        latex::table(&format!("Damping ratio by {title}: {record}."), &columns, rows)
+    });
+    std::iter::once(latex::PREAMBLE.to_owned()).chain(tables).collect::<Vec<_>>().join("\n")
+}
+
 fn word_table(table: &WordTable) -> [String; 3] {
     let rows = table.rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect());
     let columns = table.columns.map(|title| (title, false));
     [format!("## {}", escape(&table.title)), escape(&table.note), grid(&columns, rows)]
 }
 
-fn method_table(table: &MethodTable) -> [String; 2] {
+/// Returns the columns of a table of methods, each a title and `true` for right alignment.
+fn method_columns(table: &MethodTable) -> Vec<(&'static str, bool)> {
     let last = table.columns.len().saturating_sub(1);
-    let columns: Vec<_> = table
-        .columns
-        .iter()
-        .enumerate()
-        .map(|(index, title)| (*title, index != 1 && index + 1 < last))
-        .collect();
-    let rows = table.rows.iter().map(|row| method_cells(row, table.columns.len()));
-    [format!("## {}", escape(table.title)), grid(&columns, rows)]
+    table.columns.iter().enumerate().map(|(index, title)| (*title, index != 1 && index + 1 < last)).collect()
 }
 
-fn method_cells(row: &MethodView, width: usize) -> Vec<String> {
+fn method_table(table: &MethodTable) -> [String; 2] {
+    let rows = table.rows.iter().map(|row| {
+        let mut cells = method_cells(row, table.columns.len(), escape);
+        if let Some(verdict) = cells.last_mut().filter(|_| row.tone() != "good") {
+            *verdict = format!("**{verdict}**");
+        }
+        cells
+    });
+    [format!("## {}", escape(table.title)), grid(&method_columns(table), rows)]
+}
+
+fn method_cells(row: &MethodView, width: usize, escape: fn(&str) -> String) -> Vec<String> {
     let mut cells = vec![escape(&row.number), escape(&row.title)];
     cells.extend(row.numbers.iter().map(|cell| escape(cell)));
     // Beside the state and the verdict; a method without an estimate has no numbers.
     cells.resize(width.saturating_sub(2), String::new());
     cells.push(escape(&row.state));
-    cells.push(if row.passes { row.verdict().to_owned() } else { format!("**{}**", row.verdict()) });
+    cells.push(row.verdict().to_owned());
     cells
 }
 
@@ -174,6 +203,24 @@ mod tests {
         let text = markdown(&result);
         assert!(!text.contains("<script") && !text.contains("\n# b"));
         assert!(text.contains("&lt;script&gt;\\|a\\| \\# b \\`c\\` \\*d\\* \\[e\\](f) \\$g\\$ \\\\"));
+    }
+
+    #[test]
+    fn the_methods_are_latex_tables_too() {
+        let mut result = sample::result();
+        result.data.path = "a_b.csv".into();
+        let text = latex(&result);
+        assert_eq!(text.matches("\\begin{table}").count(), 2);
+        assert!(text.contains("\\caption{Damping ratio by learned methods: a\\_b.csv (measured)."), "{text}");
+        for body in text.split("\\toprule").skip(1) {
+            let body = body.split("\\bottomrule").next().unwrap();
+            let widths: Vec<usize> = body
+                .lines()
+                .filter(|line| line.ends_with("\\\\"))
+                .map(|line| line.replace("\\&", "").matches('&').count())
+                .collect();
+            assert!(widths.len() > 10 && widths.iter().all(|width| *width == widths[0]), "{widths:?}");
+        }
     }
 
     #[test]

@@ -10,10 +10,12 @@ pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀
      worst is the largest over a method’s seeds. Digits are the significant digits in which the worst seed \
      agrees with ζ₀; a double has 15.7. ± is the method’s own standard error of ζ, where it states one. ζ, \
      steps and state are the first seed’s, the time of a fit is the median over the seeds. A method passes \
-     where every seed is within the stated tolerance, or where it estimates something else. “May differ” \
+     where every seed is within the stated tolerance, or where it estimates something else; a weak baseline \
+     with a fixed number of steps that did not suffice does not count. “May differ” \
      states whether the method’s value can differ from least squares at all. “At zero” and “on noise” are \
      the first seed’s errors in percent with the learned part set to zero and with noise in place of its \
-     input: if such an error stays small, the learned part, or its input, contributed nothing to λ.";
+     input: if such an error stays small, the learned part, or its input, contributed nothing to λ. Columns \
+     that tell nothing are left out: the worst error where each method has one seed, “may differ” where none may.";
 
 /// Explanation of the two columns of ablations, for the terminal.
 pub const ABLATION_READING: &str = "if such an error stays small, the learned part, or its input, \
@@ -23,19 +25,17 @@ pub const ABLATION_READING: &str = "if such an error stays small, the learned pa
 #[must_use]
 pub fn ablation_cell(ablations: &[AblationRow], part: Ablation) -> String {
     match ablations.iter().find(|row| row.ablation == part) {
-        None => "–".to_owned(),
+        None => NONE.to_owned(),
         Some(row) => row.error_percent.map_or_else(|| "no estimate".to_owned(), error),
     }
 }
 
-/// Titles of the columns. The first column holds the method's number, the second its name, the last its
-/// verdict. A method without an estimate has its reason in place of all others.
-pub(super) const COLUMNS: [&str; 16] = [
-    "#",
-    "method",
+/// Titles of the columns of numbers. Beside them, a table has the method's number and its name on the left, its
+/// state and its verdict on the right. A method without an estimate has its reason in place of all numbers.
+const NUMBERS: [&str; 12] = [
     "ζ",
     "error, %",
-    "worst error, %",
+    "worst, %",
     "digits",
     "± of ζ",
     "seeds",
@@ -45,16 +45,18 @@ pub(super) const COLUMNS: [&str; 16] = [
     "may differ",
     "at zero, %",
     "on noise, %",
-    "state",
-    "",
 ];
+
+/// Placeholder for a number that a method does not have.
+const NONE: &str = "–";
 
 /// The methods of one family.
 pub(super) struct MethodTable {
     /// Name of its anchor in the page.
     pub(super) id: &'static str,
     pub(super) title: &'static str,
-    pub(super) columns: &'static [&'static str],
+    /// Titles of all columns, those of [`NUMBERS`] only where they tell something about these methods.
+    pub(super) columns: Vec<&'static str>,
     pub(super) rows: Vec<MethodView>,
 }
 
@@ -69,28 +71,38 @@ pub(super) struct MethodView {
     /// Reason that the first seed's fit stopped; empty if there is no estimate.
     pub(super) because: String,
     pub(super) passes: bool,
+    /// `true` if a miss does not count.
+    pub(super) excused: bool,
 }
 
 impl MethodView {
     /// The last cell.
     pub(super) fn verdict(&self) -> &'static str {
-        if self.passes { "pass" } else { "FAIL" }
+        match (self.passes, self.excused) {
+            (true, _) => "pass",
+            (false, true) => "does not count",
+            (false, false) => "FAIL",
+        }
+    }
+
+    /// Class of the last cell in the style sheet.
+    pub(super) fn tone(&self) -> &'static str {
+        match (self.passes, self.excused) {
+            (true, _) => "good",
+            (false, true) => "caution",
+            (false, false) => "bad",
+        }
     }
 }
 
 /// The tables that have rows, in the paper's order.
 pub(super) fn tables(result: &ComparisonResult) -> Vec<MethodTable> {
-    let table = |id, title, family| MethodTable {
-        id,
-        title,
-        columns: &COLUMNS,
-        rows: result
-            .results
-            .iter()
-            .chain(&result.libraries)
-            .filter(|row| row.family == family)
-            .map(view)
-            .collect(),
+    let table = |id, title, family| {
+        let rows = result.results.iter().chain(&result.libraries).filter(|row| row.family == family);
+        let mut rows: Vec<MethodView> = rows.map(view).collect();
+        let numbers = leave_out(&mut rows);
+        let columns = ["#", "method"].into_iter().chain(numbers).chain(["state", ""]).collect();
+        MethodTable { id, title, columns, rows }
     };
     [
         table("classical", "Table 4: classical numerical methods", Family::Classical),
@@ -102,8 +114,31 @@ pub(super) fn tables(result: &ComparisonResult) -> Vec<MethodTable> {
     .collect()
 }
 
+/// Leaves out the numbers that tell nothing about any of these methods, so that their table fits the page, and
+/// returns the titles of the others.
+fn leave_out(rows: &mut [MethodView]) -> Vec<&'static str> {
+    let tells = |at: usize, nothing: &str| {
+        rows.iter().filter_map(|row| row.numbers.get(at)).any(|cell| cell != nothing)
+    };
+    let has_seeds = NUMBERS.iter().position(|title| *title == "seeds").is_none_or(|at| tells(at, "1"));
+    let is_told: Vec<bool> = NUMBERS
+        .iter()
+        .enumerate()
+        .map(|(at, title)| match *title {
+            "seeds" | "worst, %" => has_seeds,
+            "may differ" => tells(at, "no"),
+            _ => tells(at, NONE),
+        })
+        .collect();
+    for row in rows {
+        let mut told = is_told.iter();
+        row.numbers.retain(|_| told.next() == Some(&true));
+    }
+    NUMBERS.into_iter().zip(is_told).filter_map(|(title, told)| told.then_some(title)).collect()
+}
+
 fn view(row: &MethodRow) -> MethodView {
-    let number = row.number.map_or_else(|| "–".to_owned(), |number| number.to_string());
+    let number = row.number.map_or_else(|| NONE.to_owned(), |number| number.to_string());
     let title = row.title.clone();
     match &row.outcome {
         MethodOutcome::Estimate(estimate) => MethodView {
@@ -114,7 +149,7 @@ fn view(row: &MethodRow) -> MethodView {
                 error(estimate.error_percent),
                 error(estimate.worst_error_percent),
                 fixed(estimate.digits_of_agreement, 1),
-                estimate.zeta_std_error.map_or_else(|| "–".to_owned(), |error| significant(error, 2)),
+                estimate.zeta_std_error.map_or_else(|| NONE.to_owned(), |error| significant(error, 2)),
                 count(estimate.seeds),
                 count(estimate.steps),
                 whole(estimate.parameters),
@@ -126,6 +161,7 @@ fn view(row: &MethodRow) -> MethodView {
             state: estimate.reached.in_words().to_owned(),
             because: estimate.stopped_because.clone(),
             passes: estimate.pass,
+            excused: row.excused,
         },
         MethodOutcome::Failed { reason } => MethodView {
             number,
@@ -134,6 +170,7 @@ fn view(row: &MethodRow) -> MethodView {
             state: format!("no estimate: {reason}"),
             because: String::new(),
             passes: false,
+            excused: false,
         },
     }
 }
@@ -172,9 +209,26 @@ mod tests {
 
     #[test]
     fn the_numbers_of_a_row_fill_its_columns() {
-        for row in tables(&sample::result()).iter().flat_map(|table| &table.rows) {
-            // Beside number, name, state and verdict.
-            assert!(row.numbers.is_empty() || row.numbers.len() == COLUMNS.len() - 4);
+        for table in tables(&sample::result()) {
+            for row in &table.rows {
+                // Beside number, name, state and verdict.
+                assert!(row.numbers.is_empty() || row.numbers.len() == table.columns.len() - 4);
+            }
+        }
+    }
+
+    #[test]
+    fn columns_that_tell_nothing_are_left_out() {
+        let mut result = sample::result();
+        for row in &mut result.results {
+            if let MethodOutcome::Estimate(estimate) = &mut row.outcome {
+                (estimate.seeds, estimate.ablations) = (1, Vec::new());
+            }
+        }
+        let columns = tables(&result)[1].columns.clone();
+        assert!(columns.contains(&"error, %") && columns.contains(&"steps"), "{columns:?}");
+        for title in ["seeds", "worst, %", "at zero, %", "on noise, %", "may differ"] {
+            assert!(!columns.contains(&title), "{title}");
         }
     }
 }

@@ -16,13 +16,14 @@ mod tests;
 use askama::Template;
 use results::Caution;
 
-use crate::figures::Figure;
+use crate::figures::{Figure, lead};
 use crate::frame::{Frame, finish};
 use crate::parse::Comparison;
+use crate::remarks::is_believed;
 use crate::tables::Fact;
 use crate::{ReportError, RunTexts};
 
-pub(crate) use markdown::markdown;
+pub(crate) use markdown::{latex, markdown};
 use methods::MethodTable;
 pub use methods::{ABLATION_READING, ablation_cell};
 use parts::WordTable;
@@ -36,6 +37,8 @@ struct ComparisonPage<'a> {
     methods: Vec<MethodTable>,
     reading: &'static str,
     guidelines: WordTable,
+    /// The plot below the verdict, if there is one.
+    lead: Vec<Figure>,
     figures: Vec<Figure>,
     summary: Vec<Fact>,
     cautions: &'a [Caution],
@@ -43,6 +46,7 @@ struct ComparisonPage<'a> {
 
 pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<String, ReportError> {
     let result = &comparison.result;
+    let mut figures = figures::figures(comparison);
     let page = ComparisonPage {
         frame: Frame::new(
             texts,
@@ -52,12 +56,13 @@ pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<St
             &result.oracle,
             &result.pipelines,
         )
-        .disagreeing(result.disagreement.as_ref()),
+        .disagreeing(result.disagreement.as_ref(), is_believed(&result.pipelines, &result.data)),
         oscillation: [oscillation::parameters(result), oscillation::derived(result)],
         methods: methods::tables(result),
         reading: methods::READING,
         guidelines: guidelines::guidelines(result),
-        figures: figures::figures(comparison),
+        lead: lead(&mut figures),
+        figures,
         summary: oscillation::summary(result),
         cautions: &result.cautions,
     };

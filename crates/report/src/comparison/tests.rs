@@ -92,7 +92,7 @@ fn every_part_is_there() {
         "Table 6",
         "(a) Decay",
         "(b) Logarithm",
-        "(c) Error by method",
+        "Figure 1 (c): error by method",
         "(d) Summary",
         "What does not follow from these numbers",
         "The same record through each pipeline",

@@ -16,16 +16,25 @@ pub(super) fn passed(result: &ComparisonResult) -> (usize, usize) {
     (held().filter(|row| row.outcome.passes()).count(), held().count())
 }
 
-/// Returns the end of a sentence on the methods that estimate another quantity than least squares, to follow
-/// a statement about the other methods; empty if there are none.
+/// Returns the end of a sentence on the methods that estimate another quantity than least squares and on weak
+/// baselines, to follow a statement about the other methods; empty if there are none.
 #[must_use]
 pub fn beside_least_squares(result: &ComparisonResult) -> String {
     let names: Vec<String> = result.of_their_own().map(|row| in_a_sentence(&row.title)).collect();
-    match names.len() {
+    let own = match names.len() {
         0 => String::new(),
         1 => format!("; {} estimates something else", listed(&names)),
         _ => format!("; {} estimate something else", listed(&names)),
-    }
+    };
+    let excused = result.excused().filter_map(|row| Some((row, row.outcome.estimate()?)));
+    let excused = excused.map(|(row, found)| {
+        format!(
+            "; {}, a weak baseline with a fixed number of steps, is {} off, which does not count",
+            in_a_sentence(&row.title),
+            format::percent(found.worst_error_percent)
+        )
+    });
+    std::iter::once(own).chain(excused).collect()
 }
 
 pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
@@ -48,7 +57,9 @@ pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
         format!("{who} with certified least squares within {tolerance}{}", shortfalls(result))
     };
     let first = format!("{first}{}.", beside_least_squares(result));
-    let mut sentences = vec![first];
+    let oracle = &result.oracle;
+    let found = format::with_uncertainty(oracle.zeta, oracle.zeta_std_error);
+    let mut sentences = vec![format!("Certified least squares finds a damping ratio of {found}."), first];
     sentences.extend(unfinished(result));
     let was_interrupted = result.results.iter().any(|row| row.outcome.is_interrupted());
     let (tone, label) = if was_interrupted {
@@ -95,7 +106,7 @@ fn agree(passed: usize, count: usize) -> String {
 /// Returns a sentence on the methods that do not pass: outside the tolerance, or without an estimate.
 fn shortfalls(result: &ComparisonResult) -> String {
     let outside: Vec<String> = estimates(result)
-        .filter(|(_, estimate)| !estimate.pass)
+        .filter(|(row, estimate)| !estimate.pass && !row.excused)
         .map(|(row, estimate)| {
             let title = in_a_sentence(&row.title);
             let error = estimate.worst_error_percent;
@@ -159,7 +170,18 @@ mod tests {
 
     fn of(result: &ComparisonResult) -> (Tone, &'static str, String) {
         let verdict = verdict(result);
-        (verdict.tone, verdict.label, verdict.sentence.replace('\u{a0}', " "))
+        let text = verdict.sentence.replace('\u{a0}', " ");
+        let found = "Certified least squares finds a damping ratio of 0.00875 ± 0.00021. ";
+        (verdict.tone, verdict.label, text.strip_prefix(found).unwrap_or(&text).to_owned())
+    }
+
+    #[test]
+    fn the_damping_ratio_comes_first() {
+        let sentence = verdict(&sample::passing()).sentence;
+        assert!(
+            sentence.starts_with("Certified least squares finds a damping ratio of 0.00875"),
+            "{sentence}"
+        );
     }
 
     #[test]
@@ -241,6 +263,21 @@ mod tests {
         assert!(text.starts_with("All 20 methods agree"), "{text}");
         assert!(text.contains(&format!("; {title} estimates something else.")), "{text}");
         assert_eq!(passed(&result), (20, 20));
+    }
+
+    #[test]
+    fn a_weak_baseline_that_used_up_its_steps_does_not_count() {
+        let mut result = sample::passing();
+        let row = result.results.iter_mut().find(|row| row.id == "gradient-descent").unwrap();
+        let MethodOutcome::Estimate(found) = &mut row.outcome else { panic!() };
+        (row.excused, found.pass, found.worst_error_percent) = (true, false, 4.9);
+        let (tone, _, text) = of(&result);
+        assert_eq!((tone, passed(&result)), (Tone::Good, (20, 20)));
+        assert!(
+            text.contains("; gradient descent, a weak baseline with a fixed number of steps, is 4.9 % off,"),
+            "{text}"
+        );
+        assert!(!text.contains("outside"), "{text}");
     }
 
     #[test]

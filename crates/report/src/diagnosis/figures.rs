@@ -1,7 +1,8 @@
 //! Parts shared by the plots of a diagnosis.
 
 use crate::figures::Figure;
-use crate::plot::{Drawing, Hue, Mark, Series};
+use crate::plot::{Axis, Drawing, Hue, Mark, Series};
+use results::DiagnosisResult;
 
 /// Returns a drawing with its title, explanation and data.
 pub(super) fn framed(
@@ -41,4 +42,14 @@ impl Simulator {
 /// Returns the series of the record.
 pub(super) fn recorded(mark: Mark, points: Vec<(f64, f64)>) -> Series {
     Series { label: "recorded".to_owned(), hue: Hue::Data, mark, points }
+}
+
+/// Returns the axis of the observed quantity.
+pub(super) fn observed_axis(result: &DiagnosisResult) -> Axis {
+    let what = match (result.quantity.as_str(), result.gap.unit.as_str()) {
+        ("position", "rad") => "angle",
+        ("position", "m") => "displacement",
+        (other, _) => other,
+    };
+    Axis::linear(format!("{what} ({})", result.gap.unit))
 }

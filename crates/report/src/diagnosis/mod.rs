@@ -41,6 +41,8 @@ struct DiagnosisPage<'a> {
     effects: Vec<EffectView>,
     apart: Vec<String>,
     experiments: Vec<String>,
+    /// The plot below the verdict, if there is one.
+    lead: Vec<Figure>,
     record_figures: Vec<Figure>,
     place_figures: Vec<Figure>,
     portrait_figures: Vec<Figure>,
@@ -57,6 +59,7 @@ struct DiagnosisPage<'a> {
 pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<String, ReportError> {
     let result = &diagnosis.result;
     let gap = tables::gap(result);
+    let (lead, record_figures) = record::figures(result, &diagnosis.series);
     let page = DiagnosisPage {
         frame: Frame {
             warnings: warnings(result),
@@ -84,10 +87,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         effects: tables::effects(result),
         apart: tables::apart(result),
         experiments: tables::experiments(result),
-        record_figures: record::figures(result, &diagnosis.series)
-            .into_iter()
-            .chain(spectrum::figure(result, &diagnosis.series))
-            .collect(),
+        lead,
+        record_figures,
         place_figures: maps::figures(result),
         portrait_figures: portrait::figures(result),
         no_backbone: result.backbone.measured.is_empty(),

@@ -2,7 +2,8 @@
 
 use results::{DiagnosisResult, RecordRow, SeriesRow};
 
-use super::figures::{Simulator, framed, recorded};
+use super::figures::{Simulator, framed, observed_axis, recorded};
+use super::spectrum;
 use crate::classes::listed;
 use crate::figures::{Figure, csv, number};
 use crate::format::{self, quantity, significant};
@@ -27,8 +28,9 @@ impl Worst<'_> {
     }
 }
 
-pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> Vec<Figure> {
-    let Some(worst) = worst(rows) else { return Vec::new() };
+/// Returns the plot that shows record and simulators together, for the top of the page, and the others.
+pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> (Vec<Figure>, Vec<Figure>) {
+    let Some(worst) = worst(rows) else { return (Vec::new(), Vec::new()) };
     let wholes = result.records.iter().take(MOST_RECORDS).enumerate().filter_map(|(index, record)| {
         let of = if result.records.len() > 1 { format!(" of record {}", index + 1) } else { String::new() };
         let title = format!("The part{of} that was read");
@@ -37,10 +39,10 @@ pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> Vec<Figur
     let others = [
         overview(result, rows, &worst),
         input(result, rows),
-        zoom(result, &worst),
         residuals(result, rows, &worst),
+        spectrum::figure(result, rows),
     ];
-    wholes.chain(others.into_iter().flatten()).collect()
+    (zoom(result, &worst).into_iter().collect(), wholes.chain(others.into_iter().flatten()).collect())
 }
 
 fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
@@ -53,15 +55,6 @@ fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
     let start = at.saturating_sub(MOST_SHOWN / 2).min(segment.len().saturating_sub(MOST_SHOWN));
     let rows = segment.get(start..(start + MOST_SHOWN).min(segment.len()))?;
     Some(Worst { record: rows.first()?.record, rows })
-}
-
-pub(super) fn observed_axis(result: &DiagnosisResult) -> Axis {
-    let what = match (result.quantity.as_str(), result.gap.unit.as_str()) {
-        ("position", "rad") => "angle",
-        ("position", "m") => "displacement",
-        (other, _) => other,
-    };
-    Axis::linear(format!("{what} ({})", result.gap.unit))
 }
 
 fn time() -> Axis {

@@ -3,8 +3,7 @@
 use results::{DiagnosisResult, SeriesRow};
 use std::f64::consts::TAU;
 
-use super::figures::framed;
-use super::record::observed_axis;
+use super::figures::{framed, observed_axis};
 use crate::figures::{Figure, csv, number};
 use crate::modes::sentence;
 use crate::plot::{Axis, Hue, Mark, Plot, Series};

@@ -11,7 +11,9 @@ use crate::format;
 /// Distance between the names and the axis on a wide page, in SVG units.
 const GAP: f64 = 10.0;
 /// Largest number of characters of a name; longer names are cut.
-const MOST_LETTERS: usize = 44;
+const MOST_LETTERS: usize = 48;
+/// Width of a letter of a name, in units of the font size: digits and capitals are wider than [`LETTER`].
+const NAME_LETTER: f64 = 0.61;
 /// Largest number of rows; beyond it, a table is easier to read than a plot.
 const MOST_ROWS: usize = 200;
 
@@ -175,7 +177,7 @@ impl Form {
     fn margins(&self, rows: &[DotRow]) -> Margins {
         // Without rows, no name needs room.
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
-        let names = letters as f64 * LETTER * self.canvas.tick_size;
+        let names = letters as f64 * NAME_LETTER * self.canvas.tick_size;
         let left = if self.above { 24.0 } else { names + GAP + 4.0 };
         // Half of the last number extends beyond the end of the axis.
         let right = (0.5 * LONGEST_NUMBER * LETTER * self.canvas.tick_size).max(24.0);

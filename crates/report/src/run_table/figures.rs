@@ -1,8 +1,10 @@
 //! The plots of many runs: distance from the reference by setting, damping ratio by run.
 
+use std::borrow::Cow;
+
 use results::{RunTable, RunTableRow};
 
-use super::cells::{setting, short_name};
+use super::cells::{short_key, short_name, shown};
 use crate::figures::{Figure, csv, number};
 use crate::format;
 use crate::plot::{Axis, DotRow, DotRows};
@@ -14,6 +16,8 @@ const LEAST_PERCENT: f64 = 100.0 * f64::EPSILON;
 const MOST_ROWS: usize = 200;
 /// Letters of a value beside a row.
 const MOST_LETTERS: usize = 16;
+/// Letters of a label beside a row, beyond which its keys are left out in favor of their values.
+const LONGEST_LABEL: usize = 48;
 
 pub(super) fn figures(table: &RunTable) -> Vec<Figure> {
     [gaps(table), ratios(table)].into_iter().flatten().collect()
@@ -45,17 +49,39 @@ impl Group<'_> {
     }
 }
 
-/// The method and what differs, as `pinn, hidden = [64]`.
+/// The method, if the runs differ in it, and what else differs, as `pinn, hidden = [64]`.
 fn label(table: &RunTable, row: &RunTableRow, wanted: &dyn Fn(&str) -> bool) -> String {
     parts(table, row, wanted, &|value| value)
 }
 
-/// As [`label`], of long values their ends alone: of paths that is where they differ.
-fn short_label(table: &RunTable, row: &RunTableRow, wanted: &dyn Fn(&str) -> bool) -> String {
-    parts(table, row, wanted, &|value| {
+/// As [`label`], of long values their ends alone: of paths that is where they differ. Of a label that is too
+/// long all the same, the values alone, because they tell the rows apart.
+pub(super) fn short_label(table: &RunTable, row: &RunTableRow, wanted: &dyn Fn(&str) -> bool) -> String {
+    let ended = |value: String| {
         let left_out = value.chars().count().saturating_sub(MOST_LETTERS);
         if left_out == 0 { value } else { format!("…{}", value.chars().skip(left_out).collect::<String>()) }
-    })
+    };
+    let label = parts(table, row, wanted, &ended);
+    if label.chars().count() <= LONGEST_LABEL {
+        return label;
+    }
+    let values = settings(table)
+        .filter(|key| wanted(key))
+        .filter_map(|key| row.settings.get(key))
+        .map(|value| ended(shown(value)));
+    let method = is_shown(table, row).then(|| row.estimator.clone());
+    method.into_iter().chain(values).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns the columns that hold settings: the measure of a search is a result.
+pub(super) fn settings(table: &RunTable) -> impl Iterator<Item = &str> {
+    let measure = table.search.as_ref().map(|search| search.measure.as_str());
+    table.columns.iter().map(String::as_str).filter(move |key| Some(*key) != measure)
+}
+
+/// Returns `true` if the method of a row is part of its label: the runs differ in it, or in nothing else.
+fn is_shown(table: &RunTable, row: &RunTableRow) -> bool {
+    table.columns.is_empty() || table.rows.iter().any(|other| other.estimator != row.estimator)
 }
 
 fn parts(
@@ -64,14 +90,22 @@ fn parts(
     wanted: &dyn Fn(&str) -> bool,
     shape: &dyn Fn(String) -> String,
 ) -> String {
-    let mut parts = vec![row.estimator.clone()];
-    for key in table.columns.iter().filter(|key| wanted(key)) {
+    let mut parts: Vec<String> = is_shown(table, row).then(|| row.estimator.clone()).into_iter().collect();
+    for key in settings(table).filter(|key| wanted(key)) {
         if let Some(value) = row.settings.get(key) {
-            let short = key.rsplit('.').next().unwrap_or(key);
-            parts.push(format!("{short} = {}", shape(setting(value))));
+            parts.push(format!("{} = {}", short_key(table, key), shape(shown(value))));
         }
     }
+    if parts.is_empty() {
+        // Runs that differ in their seed alone.
+        parts.push(row.estimator.clone());
+    }
     parts.join(", ")
+}
+
+/// Returns an error in percent as it is drawn. `max` would turn a value that is no number into one.
+pub(super) fn drawn(error: f64) -> f64 {
+    if error < LEAST_PERCENT { LEAST_PERCENT } else { error }
 }
 
 fn gaps(table: &RunTable) -> Option<Figure> {
@@ -80,8 +114,6 @@ fn gaps(table: &RunTable) -> Option<Figure> {
     let worst = |group: &Group<'_>| {
         group.rows.iter().filter_map(|row| row.worst_error_percent).max_by(f64::total_cmp).unwrap_or(f64::NAN)
     };
-    // `max` would turn a value that is no number into one.
-    let drawn = |error: f64| if error < LEAST_PERCENT { LEAST_PERCENT } else { error };
     let mut tolerances: Vec<f64> = table.rows.iter().filter_map(|row| row.tolerance_percent).collect();
     tolerances.dedup();
     let plot = DotRows {
@@ -159,14 +191,15 @@ fn ratios(table: &RunTable) -> Option<Figure> {
     figure("ratios", "Damping ratio by run", explanation, &plot, Vec::new(), text)
 }
 
-fn figure(
-    id: &'static str,
-    title: &'static str,
+pub(super) fn figure(
+    id: impl Into<Cow<'static, str>>,
+    title: impl Into<Cow<'static, str>>,
     explanation: &str,
     plot: &DotRows,
     mut notes: Vec<String>,
     (csv, rows): (String, String),
 ) -> Option<Figure> {
+    let title = title.into();
     let drawing = plot.draw(&format!("{title}: {}, one row each.", plot.x.label))?;
     if plot.rows.len() > MOST_ROWS {
         notes.push(format!("The first {MOST_ROWS} of {} rows.", plot.rows.len()));
@@ -174,15 +207,7 @@ fn figure(
     if drawing.left_out > 0 {
         notes.push(format!("Values that are not finite have no mark: {}.", drawing.left_out));
     }
-    Some(Figure {
-        id: id.into(),
-        title: title.into(),
-        explanation: explanation.to_owned(),
-        notes,
-        drawing,
-        csv,
-        rows,
-    })
+    Some(Figure { id: id.into(), title, explanation: explanation.to_owned(), notes, drawing, csv, rows })
 }
 
 #[cfg(test)]
@@ -197,9 +222,24 @@ mod tests {
         row.settings.insert("data.path".into(), "a/long/way/to/record-07.csv".into());
         row.settings.insert("seed".into(), 3.into());
         let columns = vec!["data.path".into(), "seed".into()];
-        let table = RunTable::new(RunTableTask::Runs, "", vec![], columns, vec![row.clone()]);
+        let other = RunTableRow { estimator: "lstm".into(), ..row.clone() };
+        let table = RunTable::new(RunTableTask::Runs, "", vec![], columns.clone(), vec![row.clone(), other]);
         assert_eq!(short_label(&table, &row, &|_| true), "pinn, path = …to/record-07.csv, seed = 3");
         assert_eq!(label(&table, &row, &|key| key != "seed"), "pinn, path = a/long/way/to/record-07.csv");
+        // One method needs no name, and its runs that differ in their seed alone have no other.
+        let table = RunTable::new(RunTableTask::Runs, "", vec![], columns, vec![row.clone()]);
+        assert_eq!(short_label(&table, &row, &|_| true), "path = …to/record-07.csv, seed = 3");
+        assert_eq!(label(&table, &row, &|_| false), "pinn");
+    }
+
+    #[test]
+    fn of_a_long_label_the_values_are_left() {
+        let mut row = RunTableRow::without_numbers("a", RunState::Done, "");
+        row.settings.insert("estimator.physics_weight".into(), 123_456_789_012.0.into());
+        row.settings.insert("estimator.collocation_points".into(), 128.into());
+        let columns = row.settings.keys().cloned().collect();
+        let table = RunTable::new(RunTableTask::Runs, "", vec![], columns, vec![row.clone()]);
+        assert_eq!(short_label(&table, &row, &|_| true), "123456789012, 128");
     }
 
     #[test]

@@ -4,10 +4,22 @@ use crate::format::count;
 use crate::verdict::{Tone, Verdict};
 use results::RunTable;
 
-/// Explanation of the table.
-pub(super) const READING: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \
+/// Explanation of the columns of estimates.
+const ESTIMATES: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \
      envelope; the worst is the largest over a run’s seeds. ± and the 95 % interval are the method’s own, under independent \
      residuals. A run passes where every seed is within its stated tolerance.";
+/// Explanation of the columns of learners.
+const LEARNERS: &str = "The errors of learners are root mean squares of free runs: × noise is the error divided by the sensor noise. \
+     Settings may be chosen by the validation error; the test error is on records that no choice has seen. The horizon is \
+     the median time until the error exceeds three times the noise.";
+
+/// Returns the explanation of the table's columns.
+pub(super) fn reading(table: &RunTable) -> String {
+    let has_learned = table.rows.iter().any(|row| row.learned.is_some());
+    let has_estimates = !has_learned || table.rows.iter().any(|row| row.zeta.is_some());
+    let parts = [has_estimates.then_some(ESTIMATES), has_learned.then_some(LEARNERS)];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" ")
+}
 
 pub(super) fn headline(table: &RunTable) -> Verdict {
     let missed = table.rows.iter().filter(|row| !row.state.is_bad() && row.pass == Some(false)).count();

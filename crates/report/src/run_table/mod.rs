@@ -3,6 +3,7 @@
 mod cells;
 mod figures;
 mod headline;
+mod swept;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -15,9 +16,9 @@ use crate::frame::{Frame, finish};
 use crate::verdict::{self, Origin};
 use crate::{ReportError, RunTexts};
 use cells::{Column, RowView};
-use headline::{READING, headline, whole};
+use headline::{headline, reading, whole};
 
-pub use text::{csv, markdown, text_cells};
+pub use text::{csv, latex, markdown, text_cells};
 
 /// Largest number of rows on the page; `table.csv` has all rows.
 const MOST_ROWS: usize = 2_000;
@@ -30,7 +31,7 @@ struct RunTablePage<'a> {
     frame: Frame<'a>,
     axes: &'a [SweepAxis],
     figures: Vec<Figure>,
-    reading: &'static str,
+    reading: String,
     shortened: String,
     columns: Vec<Column>,
     /// Number of columns with numbers.
@@ -45,6 +46,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
     } else {
         texts.result
     };
+    let numbers = cells::numbers(table);
     let page = RunTablePage {
         frame: Frame {
             warnings: warnings(table),
@@ -64,16 +66,16 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
             )
         },
         axes: &table.axes,
-        figures: figures::figures(table),
-        reading: READING,
+        figures: swept::figures(table).into_iter().chain(figures::figures(table)).collect(),
+        reading: reading(table),
         shortened: if shown < table.rows.len() {
             format!("The first {shown} of {} rows; table.csv has all.", table.rows.len())
         } else {
             String::new()
         },
         columns: cells::columns(table),
-        numbers: cells::NUMBERS.len(),
-        rows: table.rows.iter().take(shown).map(|row| cells::row(table, row)).collect(),
+        rows: table.rows.iter().take(shown).map(|row| cells::row(table, &numbers, row)).collect(),
+        numbers: numbers.len(),
     };
     finish(&page)
 }

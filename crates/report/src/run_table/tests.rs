@@ -1,9 +1,9 @@
 //! Tests of the page and the texts on many runs.
 
-use results::{Origin, Reached, RunState, RunTable, RunTableRow, RunTableTask, SweepAxis};
+use results::{LearnedScores, Origin, Reached, RunState, RunTable, RunTableRow, RunTableTask, SweepAxis};
 use serde_json::{Value, json};
 
-use super::{csv, markdown, text_cells};
+use super::{csv, latex, markdown, text_cells};
 use crate::{RunTexts, render};
 
 fn row(run: &str, estimator: &str, seed: u64, error: f64) -> RunTableRow {
@@ -83,6 +83,64 @@ fn every_run_has_its_row_and_a_bad_one_its_reason() {
     assert_eq!(page(&table()), html);
 }
 
+/// A table of one method whose runs differ in a number and in their seed.
+fn swept() -> RunTable {
+    const KEY: &str = "estimator.physics_weight";
+    let run = |weight: f64, seed: u64, error: f64| {
+        let mut row = row(&format!("runs/{weight}-{seed}"), "pinn", seed, error);
+        row.settings.insert(KEY.into(), weight.into());
+        row
+    };
+    let rows = vec![run(1e-4, 0, 20.0), run(1e-4, 1, 30.0), run(1.0, 0, 0.5), run(1e6, 0, 1e-6)];
+    RunTable::new(RunTableTask::Sweep, "a sweep", vec![], vec![KEY.into(), "seed".into()], rows)
+}
+
+fn plot<'a>(html: &'a str, id: &str) -> &'a str {
+    html.split(&format!("id=\"{id}\"")).nth(1).unwrap().split("</figure>").next().unwrap()
+}
+
+#[test]
+fn a_metric_is_plotted_against_a_swept_number_over_its_decades() {
+    let html = page(&swept());
+    let plot = plot(&html, "by-estimator-physics-weight");
+    assert!(plot.contains("Distance from the reference in ζ against physics_weight"), "{plot}");
+    assert!(plot.contains(">10⁻⁴<") && plot.contains(">10⁶<") && plot.contains("median"));
+    // The label of a row is its value, and nothing of it is cut.
+    assert!(html.contains(">physics_weight = 1e6<") && html.contains(">physics_weight = 1e6, seed = 0<"));
+}
+
+#[test]
+fn words_are_rows_and_learners_have_their_errors() {
+    let learner = |id: &str, error: f64| RunTableRow {
+        task: "learn".into(),
+        estimator: id.into(),
+        learned: Some(LearnedScores {
+            problem: "drag".into(),
+            validation_over_noise: Some(error),
+            test_over_noise: Some(2.0 * error),
+            test_rmse: Some(0.25),
+            unit: "rad".into(),
+            horizon_s: Some(3.5),
+            coverage_95: None,
+        }),
+        parameters: Some(7),
+        seconds: Some(1.5),
+        ..RunTableRow::without_numbers(&format!("runs/{id}"), RunState::Done, "")
+    };
+    let rows = vec![learner("lstm", 1.25), learner("sindy", 9.0)];
+    let table = RunTable::new(RunTableTask::Sweep, "", vec![], vec![], rows);
+    let html = page(&table);
+    assert!(plot(&html, "by-method").contains("Validation error by method"));
+    assert!(html.contains(">test error, × noise</th>") && html.contains("<td>1.25</td><td>2.50</td>"));
+    assert!(!html.contains(">ζ</th>") && !html.contains("in 95 % band"), "a column without content");
+    let (header, rows) = text_cells(&table);
+    assert!(header.contains(&"test × noise".to_owned()) && rows[1].contains(&"18.000".to_owned()));
+    assert!(csv(&table).lines().next().unwrap().ends_with(
+        "reason,problem,validation_over_noise,test_over_noise,test_rmse,unit,horizon_s,coverage_95"
+    ));
+    assert!(!csv(&self::table()).contains("validation_over_noise"));
+}
+
 #[test]
 fn records_of_different_origins_are_loud() {
     let mut table = table();
@@ -118,6 +176,11 @@ fn every_line_of_the_markdown_has_its_columns() {
     assert_eq!(widths, [widths[0]; 7]);
     assert!(text.contains("**CORRUPT**") && text.contains("**FAIL**"));
     assert!(!text.contains("<script"));
+    let text = latex(&table());
+    let widths: Vec<usize> =
+        text.lines().filter(|line| line.ends_with("\\\\")).map(|line| line.matches('&').count()).collect();
+    assert_eq!(widths, [widths[0]; 6]);
+    assert!(text.contains("\\caption{a sweep}") && text.contains("95 \\% interval"), "{text}");
 }
 
 #[test]

@@ -362,3 +362,30 @@ fn a_sweep_is_one_entry_that_is_done_when_every_run_came_to_its_end() {
         assert_eq!((found.rows.len(), found.rows[0].state), (1, state));
     }
 }
+
+#[test]
+fn every_learner_of_a_study_is_a_row_with_its_scores() {
+    let row = |id: &str, kind: &str, error: Value| {
+        json!({ "problem": "drag", "id": id, "title": id, "kind": kind, "coefficients": null, "equation": null,
+                "torque_error": null, "parameters": 7, "seconds": 1.5, "reached": "converged", "failure": null,
+                "model": null, "validation": { "free_run_rmse": 0.1, "over_noise": 2.0 },
+                "test": { "free_run_rmse": 0.25, "unit": "rad", "over_noise": error, "horizon_s": 3.5,
+                          "one_step_rmse": null, "coverage_95": null } })
+    };
+    let mut failed = row("lstm", "learner", Value::Null);
+    (failed["test"], failed["reached"]) = (Value::Null, json!("failed"));
+    failed["failure"] = json!("no stretch");
+    let data = json!({ "records": 1, "train": 1, "validation": 1, "test": 1 });
+    let result = json!({ "schema": "ringdown.result/1", "task": "learn", "seed": 0, "data": data, "seconds": 2.0,
+                         "problems": [], "results": [row("sindy", "learner", json!(4.0)), failed,
+                                                     row("arx", "baseline", json!(9.0))] });
+    let root = tempfile::tempdir().unwrap();
+    let config = ("config.toml", "task = \"learn\"\n");
+    run(root.path(), "study", &[config, ("result.json", &result.to_string())]);
+    let read = read_run(&root.path().join("study"));
+    let rows: Vec<&str> = read.rows.iter().map(|row| row.estimator.as_str()).collect();
+    assert_eq!(rows, ["sindy", "lstm"], "{}", read.reason);
+    let scores = read.rows[0].learned.as_ref().unwrap();
+    assert_eq!((scores.validation_over_noise, scores.test_over_noise), (Some(2.0), Some(4.0)));
+    assert_eq!((read.rows[1].reason.as_str(), &read.rows[1].learned), ("no stretch", &None));
+}

@@ -74,6 +74,7 @@ pub(crate) fn linfa(envelope: &Envelope, oracle: f64, tolerance_percent: f64) ->
         title: "linfa and linfa-linear".to_owned(),
         family: Family::Library,
         estimand: Estimand::LeastSquares,
+        excused: false,
         outcome,
     }
 }

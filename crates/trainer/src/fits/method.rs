@@ -132,6 +132,12 @@ impl Method {
         }
     }
 
+    /// Returns `true` for the deliberately weak baseline: plain gradient descent takes the paper's fixed number of
+    /// steps in unscaled seconds, which do not suffice for a long record, whatever its quality.
+    pub(crate) fn has_fixed_steps(&self) -> bool {
+        self.id() == classical::gradient_descent::ROUTE.id
+    }
+
     /// Returns `true` if an error passes. A value that may differ from least squares passes at any finite
     /// distance.
     pub(crate) fn passes(&self, error_percent: f64, tolerance_percent: f64) -> bool {

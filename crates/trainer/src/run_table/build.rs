@@ -23,14 +23,14 @@ const COLUMNS: [&str; 8] = ["run", "method", "zeta", "error", "worst", "steps", 
 pub(crate) fn build(task: RunTableTask, name: &str, axes: Vec<SweepAxis>, entries: Vec<Entry>) -> RunTable {
     let configs: Vec<&Document> = entries.iter().filter_map(|entry| entry.config.as_ref()).collect();
     let varied = axes.iter().filter(|axis| axis.values.len() > 1).map(|axis| axis.key.clone());
-    // The estimator has a column of its own.
-    let mut columns: Vec<String> =
-        varied.filter(|key| !["estimator", "estimator.name"].contains(&key.as_str())).collect();
+    let mut columns: Vec<String> = varied.collect();
     for key in differing_keys(&configs) {
         if !columns.contains(&key) {
             columns.push(key);
         }
     }
+    // Estimators and learners have a column of their own.
+    columns.retain(|key| !["estimator", "estimator.name", "learn.learners"].contains(&key.as_str()));
     let mut rows = Vec::new();
     for entry in entries {
         let value = |key: &String| {

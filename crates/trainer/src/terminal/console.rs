@@ -1,5 +1,6 @@
 //! Printing to the terminal. No other module prints.
 
+use super::wrap::fitted;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 
@@ -18,6 +19,11 @@ pub(crate) fn result(text: &str) {
     }
 }
 
+/// Prints sentences and tables on standard output; on a terminal, lines break at spaces.
+pub(crate) fn text(text: &str) {
+    result(&fitted(text, &std::io::stdout()));
+}
+
 /// Returns the reason why some result did not reach standard output; `None` if all did.
 pub(crate) fn lost() -> Option<&'static str> {
     LOST.get().map(String::as_str)
@@ -30,14 +36,16 @@ pub(crate) fn table(text: &str, red: &[&str]) {
         return result(text);
     }
     let is_red = |line: &str| red.iter().any(|word| line.contains(word));
-    let lines = text
-        .lines()
-        .map(|line| if is_red(line) { format!("\u{1b}[31m{line}\u{1b}[0m") } else { line.to_owned() });
+    let lines = text.lines().map(|line| {
+        let fitted = fitted(line, &std::io::stdout());
+        if is_red(line) { format!("\u{1b}[31m{fitted}\u{1b}[0m") } else { fitted }
+    });
     result(&lines.collect::<Vec<_>>().join("\n"));
 }
 
 /// Prints a remark on standard error. If that fails, there is nobody to tell, and the work continues.
 pub(crate) fn remark(text: &str) {
+    let text = fitted(text, &std::io::stderr());
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 

@@ -5,3 +5,4 @@ pub(crate) mod interrupt;
 pub(crate) mod progress;
 pub(crate) mod quit;
 pub(crate) mod table;
+pub(crate) mod wrap;

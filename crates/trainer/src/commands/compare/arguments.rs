@@ -13,7 +13,7 @@ Examples:
   trainer compare SWEEP OTHER                              all runs of sweeps
   trainer compare reports/runs --sort seconds --reverse    every run in a folder, the slowest first
   trainer compare SWEEP --format csv > table.csv
-  trainer compare SWEEP --out DIR                          report.html, table.csv, table.md, result.json
+  trainer compare SWEEP --out DIR                          report.html, table.{csv,md,tex}, result.json
 
 The columns are the configuration keys in which the runs differ, the estimate, its standard error,
 the error (distance from closed-form least squares on the same envelope), steps, seconds and the state
@@ -31,7 +31,7 @@ pub(crate) struct CompareArguments {
     /// Form of the output
     #[arg(long, value_enum, conflicts_with = "json")]
     pub(crate) format: Option<Format>,
-    /// Writes report.html, table.csv, table.md and result.json to a new or empty folder
+    /// Writes report.html, table.csv, table.md, table.tex and result.json to a new or empty folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -48,6 +48,9 @@ pub(crate) enum Format {
     /// GitHub Markdown
     #[value(alias = "md")]
     Markdown,
+    /// LaTeX table with the rules of booktabs
+    #[value(alias = "tex")]
+    Latex,
     /// HTML page
     Html,
 }

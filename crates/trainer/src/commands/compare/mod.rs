@@ -12,7 +12,7 @@ use crate::run_table::{
 };
 use crate::terminal::console;
 use arguments::{CompareArguments, Format};
-use report::{RunTexts, render_run_table, run_table_csv, run_table_markdown};
+use report::{RunTexts, render_run_table, run_table_csv, run_table_latex, run_table_markdown};
 use results::{RunTable, RunTableTask};
 use runs::{RunFolder, SweepFolder, has_run_files, list_runs, read_run};
 use std::path::{Path, PathBuf};
@@ -37,6 +37,7 @@ pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerEr
         folder.write_json("result.json", &table)?;
         folder.write("table.csv", run_table_csv(&table).as_bytes())?;
         folder.write("table.md", run_table_markdown(&table).as_bytes())?;
+        folder.write("table.tex", run_table_latex(&table).as_bytes())?;
         write_report(&folder)?;
     }
     if arguments.output.json {
@@ -45,6 +46,7 @@ pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerEr
         match arguments.format {
             Some(Format::Csv) => console::result(run_table_csv(&table).trim_end()),
             Some(Format::Markdown) => console::result(run_table_markdown(&table).trim_end()),
+            Some(Format::Latex) => console::result(run_table_latex(&table).trim_end()),
             Some(Format::Html) => console::result(&page(&table)?),
             Some(Format::Text) | None => print_table(&table),
         }

@@ -79,7 +79,7 @@ fn estimators(output: Output) -> Result<(), TrainerError> {
             ]
         })
         .collect();
-    console::result(&table(&["name", "no. in the paper", "family", "what it does"], rows));
+    console::text(&table(&["name", "no. in the paper", "family", "what it does"], rows));
     Ok(())
 }
 
@@ -101,7 +101,7 @@ fn learners(output: Output) {
         return;
     }
     let row = |entry: &Entry| [entry.id, entry.kind.name(), entry.summary].map(str::to_owned).to_vec();
-    console::result(&table(&["name", "kind", "what it does"], LEARNERS.iter().map(row).collect()));
+    console::text(&table(&["name", "kind", "what it does"], LEARNERS.iter().map(row).collect()));
 }
 
 fn effects(output: Output) {
@@ -112,7 +112,7 @@ fn effects(output: Output) {
         return;
     }
     let entries: Vec<String> = descriptions().map(entry).collect();
-    console::result(&entries.join("\n\n"));
+    console::text(&entries.join("\n\n"));
 }
 
 /// Formats an effect as a paragraph of short lines: a table of all its properties would be wider than a

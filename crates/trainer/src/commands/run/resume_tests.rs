@@ -75,7 +75,8 @@ fn timeless(folder: &Path) -> BTreeMap<PathBuf, String> {
                 let mut value: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
                 forget_seconds(&mut value);
                 found.insert(name, value.to_string());
-            } else if !["events.jsonl", "report.html", "tables.md", ".lock"].contains(&name.to_str().unwrap())
+            } else if !["events.jsonl", "report.html", "tables.md", "table.tex", ".lock"]
+                .contains(&name.to_str().unwrap())
             {
                 found.insert(name, format!("{:?}", std::fs::read(&path).unwrap()));
             }

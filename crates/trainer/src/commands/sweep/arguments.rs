@@ -47,7 +47,7 @@ estimator=NAME chooses the estimator and leaves out what the file sets for anoth
 
 Every combination is resolved and checked before the first one runs, and frozen: SWEEP/sweep.json
 lists the runs, each with its digest, its state and its folder below SWEEP/runs, which `trainer
-report` reads. SWEEP/report.html, table.csv and table.md put them side by side.
+report` reads. SWEEP/report.html, table.csv, table.md and table.tex put them side by side.
 
 Exit codes: 0 done; 1 a run failed, or is outside its stated tolerance; 2 wrong input or usage,
 nothing was run; 130 interrupted, what is done is kept. With --as-task 0 instead of 1. A search ends with 1 only

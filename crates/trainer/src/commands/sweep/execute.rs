@@ -304,7 +304,11 @@ fn report(
         progress.run_done(&format!("{name}: FAILED"));
         return Ok(());
     }
-    let rows = end.run.as_ref().map(|run| read_run(&sweep.folder.path().join(run)).rows).unwrap_or_default();
+    let run = end.run.as_ref().map(|run| read_run(&sweep.folder.path().join(run)));
+    let result = match &run {
+        Some(run) if !run.summary.is_empty() => run.summary.clone(),
+        run => said(run.as_ref().map_or(&[], |run| &run.rows)),
+    };
     let measure = match &sweep.manifest.search {
         Some(search) => {
             let ended = SweepLine { state: end.state, run: end.run.clone(), ..line.clone() };
@@ -317,7 +321,7 @@ fn report(
         }
         None => String::new(),
     };
-    progress.run_done(&format!("{name}: {}{measure}", said(&rows)));
+    progress.run_done(&format!("{name}: {result}{measure}"));
     Ok(())
 }
 

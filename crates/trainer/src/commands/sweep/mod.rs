@@ -19,7 +19,7 @@ use arguments::SweepArguments;
 use execute::Making;
 use frozen::{FrozenSweep, Job, is_missing};
 use record::counted;
-use report::{run_table_csv, run_table_markdown};
+use report::{run_table_csv, run_table_latex, run_table_markdown};
 use results::{RunTable, SweepLine, SweepManifest, SweepSearch, SweepState};
 use runs::SweepFolder;
 use serde::Serialize;
@@ -108,7 +108,7 @@ fn tell(output: Output, path: &str, table: &RunTable) -> Result<(), TrainerError
     } else if !output.quiet {
         print_table(table);
         if let Some(found) = &table.search {
-            console::result(&format!("\n{}", found.sentence()));
+            console::text(&format!("\n{}", found.sentence()));
         }
         console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
     }
@@ -161,6 +161,7 @@ pub(crate) fn finish(sweep: &SweepFolder, manifest: &mut SweepManifest) -> Resul
         folder.write_json("result.json", &table)?;
         folder.write("table.csv", run_table_csv(&table).as_bytes())?;
         folder.write("table.md", run_table_markdown(&table).as_bytes())?;
+        folder.write("table.tex", run_table_latex(&table).as_bytes())?;
         write_report(folder)?;
         let now = sweep.manifest().map_err(SweepCommandError::Folder)?;
         if now.is_none_or(|now| now.runs == manifest.runs) {

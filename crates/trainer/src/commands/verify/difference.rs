@@ -11,7 +11,7 @@ use std::path::Path;
 /// Files that are not compared: they record the machine and the time, or are checked or derived otherwise.
 /// The configuration is checked by its digest, and the pages are rebuilt from the other files.
 const NOT_COMPARED: &[&str] =
-    &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
+    &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md", "table.tex"];
 
 /// Subfolder that `trainer export` adds to a run's folder, which is not part of the run.
 const EXPORTED: &str = "tensorboard/";
