@@ -41,7 +41,8 @@ def read(mode, *keys):
     for key in keys:
         found = mode.get(key)
         if isinstance(found, dict) and found.get("value") is not None:
-            return found["value"], found.get("std_error") or 0.0
+            low, high = found.get("interval_95") or (0.0, 0.0)
+            return found["value"], found.get("std_error") or (high - low) / 3.92
         if isinstance(found, (int, float)):
             return found, 0.0
     return None
