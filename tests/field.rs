@@ -61,7 +61,11 @@ fn field(name: &str) -> Option<PathBuf> {
 /// Looks at a log; returns the answer, or the message of a refusal.
 fn look(path: &std::path::Path, options: &[&str]) -> Result<Value, String> {
     let scratch = tempfile::tempdir().unwrap();
-    let out = scratch.path().join("out");
+    look_into(&scratch.path().join("out"), path, options)
+}
+
+/// Looks at a log and writes the files into a folder.
+fn look_into(out: &std::path::Path, path: &std::path::Path, options: &[&str]) -> Result<Value, String> {
     let mut arguments = vec!["init", path.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
     arguments.extend(options);
     let output = trainer(&arguments);
@@ -79,6 +83,61 @@ fn every_log_has_its_frequency_and_its_damping() {
         };
         near(number(&found, "/oscillator/natural_frequency_hz/value"), *frequency, *frequency_part);
         near(number(&found, "/oscillator/damping_ratio/value"), *ratio, *ratio_part);
+    }
+}
+
+/// Regression: on 14 of 46 public logs the commands that were printed failed.
+#[test]
+fn an_estimate_that_is_printed_works_and_agrees() {
+    for (name, options, _, [ratio, part]) in LOGS {
+        let Some(path) = field(name) else { continue };
+        let scratch = tempfile::tempdir().unwrap();
+        let out = scratch.path().join("out");
+        let found = look_into(&out, &path, options).unwrap();
+        let configuration = out.join("estimate.toml");
+        let is_printed = found["next"].to_string().contains("estimate.toml");
+        assert_eq!(is_printed, configuration.exists(), "{name}");
+        if !is_printed {
+            continue;
+        }
+        let run = scratch.path().join("run");
+        let [configuration, run] = [&configuration, &run].map(|path| path.to_str().unwrap());
+        let output = trainer(&[configuration, "--json", "--out", run]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let zeta = number(&result, "/estimate/zeta");
+        assert!((zeta / ratio - 1.0).abs() < *part, "{name} {options:?}: {zeta} for {ratio}");
+    }
+}
+
+/// Few peaks, noise and other modes leave the damping to the samples, and that is said.
+#[test]
+fn samples_serve_where_peaks_do_not() {
+    for (name, because, zeta, part) in [
+        ("step-response/step.csv", "peaks", 0.611, 0.01),
+        ("coupled-pendulums/pendulum.csv", "the record holds 2 modes", 0.0016, 0.2),
+    ] {
+        let Some(path) = field(name) else { continue };
+        let scratch = tempfile::tempdir().unwrap();
+        let out = scratch.path().join("out");
+        look_into(&out, &path, &[]).unwrap();
+        let configuration = out.join("estimate.toml");
+        let run = |options: &[&str]| {
+            let run = scratch.path().join(format!("run{}", options.len()));
+            let mut arguments =
+                vec![configuration.to_str().unwrap(), "--json", "--out", run.to_str().unwrap()];
+            arguments.extend(options);
+            trainer(&arguments)
+        };
+        let result: Value = serde_json::from_slice(&run(&[]).stdout).unwrap();
+        assert_eq!(result["envelope"]["pipeline"], "samples", "{name}");
+        assert!(result["envelope"]["pipeline_because"].to_string().contains(because), "{name}: {result}");
+        let found = number(&result, "/estimate/zeta");
+        assert!((found / zeta - 1.0).abs() < part, "{name}: {found}");
+        let peaks = run(&["envelope.pipeline=recommended"]);
+        let is_right = serde_json::from_slice::<Value>(&peaks.stdout)
+            .is_ok_and(|result| (number(&result, "/estimate/zeta") / zeta - 1.0).abs() < part);
+        assert!(!is_right, "{name}: the peaks serve as well");
     }
 }
 

@@ -99,7 +99,7 @@ fn a_mean_that_no_swing_has_is_told_and_taken_away_as_printed() {
         (String::from_utf8(program.stdout).unwrap(), String::from_utf8(program.stderr).unwrap())
     };
     let (shown, _) = run(&["init", "gyro.csv"]);
-    assert!(shown.contains("but the velocity of a free swing averages about zero"), "{shown}");
+    assert!(shown.contains("but the velocity of what swings averages about zero"), "{shown}");
     assert!(shown.contains("--nominal gyro/nominal.toml --remove-mean"), "{shown}");
     let nominal = ["--nominal", "gyro/nominal.toml", "--json", "--out"];
     let call = |more: &[&str], out: &str| -> Value {

@@ -82,15 +82,7 @@ impl RecommendedPipeline {
     /// [`EnvelopeError::TooFewPeaks`] for fewer than three turning points above the noise.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
         let values = record.values();
-        // Values without a lattice are not rounded.
-        let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
-        let noise = match noise_level(values) {
-            // A log that is filled up with zeros is constant in most of its samples; the noise is in the
-            // others.
-            0.0 if quantum < FINE * range(values) => noise_level(&moving(values)),
-            level => level,
-        };
-        let noise = noise.max(quantum / 12_f64.sqrt());
+        let (noise, quantum) = noise_and_quantum(record);
         let floor = self.floor_in_noise * noise;
 
         // Prominence is measured from valley to top, which is twice the amplitude. Tops well below the floor
@@ -142,6 +134,19 @@ impl RecommendedPipeline {
             samples: values.len(),
         })
     }
+}
+
+/// Returns the noise, of which rounding is a part, and the step of the values; 0 for a step if there is none.
+fn noise_and_quantum(record: &Record) -> (f64, f64) {
+    let values = record.values();
+    // Values without a lattice are not rounded.
+    let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
+    let noise = match noise_level(values) {
+        // A log that is filled up with zeros is constant in most of its samples; the noise is in the others.
+        0.0 if quantum < FINE * range(values) => noise_level(&moving(values)),
+        level => level,
+    };
+    (noise.max(quantum / 12_f64.sqrt()), quantum)
 }
 
 fn range(values: &[f64]) -> f64 {

@@ -1,7 +1,7 @@
 //! Pipelines from a record to an envelope, and the choice between them.
 
 use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
-use identify::SamplesPipeline;
+use identify::{Basis, SamplesPipeline};
 use record::{Clock, Record};
 use serde::Deserialize;
 use settings::{Resolved, SettingsError};
@@ -110,13 +110,17 @@ fn unsuited(peaks: &Result<Extraction, EnvelopeError>, record: &Record, clock: &
         return Some(format!("the record has {found} clear peak{s}, fewer than {FEW_PEAKS}"));
     }
     let modes = identify::modes(record, clock);
-    let second = modes.get(1).filter(|mode| mode.share > SECOND_MODE)?;
-    Some(format!(
-        "the record holds {} modes, the second of {:.3} Hz with {:.0} % of the power; they are taken away before",
-        modes.len(),
-        second.frequency_hz.value,
-        100.0 * second.share
-    ))
+    if let Some(second) = modes.get(1).filter(|mode| mode.share > SECOND_MODE) {
+        return Some(format!(
+            "the record holds {} modes, the second of {:.3} Hz with {:.0} % of the power; they are taken away before",
+            modes.len(),
+            second.frequency_hz.value,
+            100.0 * second.share
+        ));
+    }
+    let basis = identify::identify(record, clock).ok()?.basis;
+    matches!(basis, Basis::Samples(_))
+        .then(|| format!("the samples tell the damping much better than the {found} peaks"))
 }
 
 #[derive(Deserialize)]

@@ -95,7 +95,7 @@ fn a_silent_configuration_has_the_defaults_of_the_paper_and_ours() {
     assert_eq!(found.data.clock, ClockChoice::Auto);
     assert_eq!((found.fit.seeds, found.fit.max_steps), (1, None));
     assert!((found.fit.tolerance_percent - 0.1).abs() < 1e-15);
-    assert_eq!((found.envelope.pipeline.name(), Pipeline::Paper.name()), ("recommended", "paper"));
+    assert_eq!((found.envelope.pipeline.name(), Pipeline::Paper.name()), ("auto", "paper"));
     let paper = &found.envelope.paper;
     assert_eq!((paper.smoothing_window, paper.smoothing_order, paper.peak_distance), (0, 3, 50));
     let numbers = [paper.interpolation_step_s, paper.late_fraction, paper.prominence];

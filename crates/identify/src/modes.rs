@@ -83,10 +83,9 @@ pub fn modes(record: &Record, clock: &Clock) -> Vec<Mode> {
     if input(record, clock).is_some() {
         return Vec::new();
     }
-    // A record without motion has no modes.
     Samples::new(record, clock)
         .and_then(|samples| Some(samples.reported(&samples.fitted()?)))
-        .unwrap_or_default()
+        .unwrap_or_default() // None without motion.
 }
 
 /// Strongest mode of a free decay, alone.

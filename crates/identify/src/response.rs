@@ -7,7 +7,7 @@
 use crate::observed::{input, order};
 use crate::{Basis, Estimated, LinearOscillator};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
-use record::{Clock, Record};
+use record::{Clock, Record, noise_level};
 
 /// Numbers that are fitted: stiffness, damping, input gain, shift, first position and first velocity.
 const COUNT: usize = 6;
@@ -29,6 +29,8 @@ const LONGEST: f64 = 0.15;
 const MOST_STEPS: f64 = 200.0;
 /// Smallest stiffness that counts as a restoring torque, in its standard errors.
 const SIGNIFICANT: f64 = 3.0;
+/// Residuals of a linear system's response, in units of the noise.
+const LINEAR: f64 = 4.0;
 /// Lowest guess of a natural frequency, in radians per record, and highest one, in radians per sampling interval.
 const SLOWEST: f64 = 10.0;
 const FASTEST: f64 = 1.0;
@@ -40,7 +42,7 @@ const DAMPINGS: [f64; 2] = [0.1, 0.5];
 const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
 
 /// Fits the response to an input, from a first guess and from the best of many others. `None` without a changing
-/// input or a spring.
+/// input or a spring, or if it leaves far more than the noise where there is a guess.
 pub(crate) fn driven(
     record: &Record,
     clock: &Clock,
@@ -60,7 +62,11 @@ pub(crate) fn driven(
         let best = grid.min_by(|one, other| left(one).total_cmp(&left(other)));
         nearest(guess.into_iter().chain(best).filter_map(|start| problem.fitted(start)))
     });
-    sprung(nearest(fits.into_iter().flatten()))
+    let (rest, found) = nearest(fits.into_iter().flatten())?;
+    // A response misses much more of a system that is not linear than a regression over short windows.
+    let noise = noise_level(record.values()).max(record.lattice().map_or(0.0, |lattice| lattice.step)); // 0: not rounded.
+    let is_linear = rest < record.len() as f64 * (LINEAR * noise).powi(2);
+    sprung(Some((rest, found))).filter(|_| is_linear || guess.is_none())
 }
 
 /// Fits a motion that returns to rest in a few cycles or without a swing, from a first guess and from others. `None` if
@@ -131,10 +137,11 @@ impl Problem {
         let mut rest = samples.iter().peekable();
         let mut knots: Vec<Knot> = Vec::with_capacity(at.len());
         for (index, &(time, push)) in at.iter().enumerate() {
-            let rate = at.get(index + 1).filter(|next| !kept && next.0 > time).map_or(0.0, |next| {
-                // The last input has no next one, and stays.
-                (next.1 - push) / (next.0 - time)
-            });
+            // The last input has no next one, and stays.
+            let rate = at
+                .get(index + 1)
+                .filter(|next| !kept && next.0 > time)
+                .map_or(0.0, |next| (next.1 - push) / (next.0 - time));
             let value = rest.next_if(|sample| sample.0 <= time).map(|sample| sample.1);
             knots.push(Knot { time, push, rate, value });
         }

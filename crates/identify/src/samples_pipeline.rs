@@ -230,7 +230,7 @@ impl SamplesPipeline {
             let noise = self.floor_in_errors * noise * window.leverage.sqrt();
             window.amplitude() > noise.max(DYNAMIC_RANGE * top)
         };
-        let decay = own.get(start..).unwrap_or_default();
+        let Some(decay) = own.get(start..) else { return Vec::new() };
         let hidden = decay.windows(2).position(|pair| !pair.iter().any(is_clear));
         decay.iter().take(hidden.unwrap_or(decay.len())).filter(|window| is_clear(window)).copied().collect()
     }
@@ -324,12 +324,10 @@ impl Swing {
         let mut sums = (0.0, 0.0);
         let mut fits = Vec::new();
         let mut from = 0;
-        while let Some(&start) = times.get(from) {
-            let to = from
-                + times.get(from..).map_or(0, |rest| rest.partition_point(|time| time - start < length_s));
-            let (own, values) =
-                (times.get(from..to).unwrap_or_default(), self.values.get(from..to).unwrap_or_default());
-            let spanned = own.last().map_or(0.0, |last| last - start);
+        while let Some((&start, later)) = times.get(from..).and_then(<[f64]>::split_first) {
+            let to = from + 1 + later.partition_point(|time| time - start < length_s);
+            let (Some(own), Some(values)) = (times.get(from..to), self.values.get(from..to)) else { break };
+            let spanned = own.last().map_or(f64::NAN, |last| last - start);
             if own.len() >= FEWEST_SAMPLES && spanned >= LEAST_SPAN * length_s {
                 let center = 0.5 * (start + start + spanned);
                 if let Some(sum) = Sums::new(self, own, values, center) {
@@ -338,7 +336,7 @@ impl Swing {
                     fits.push(sum);
                 }
             }
-            from = to.max(from + 1);
+            from = to;
         }
         let offset = if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 };
         (fits.iter().map(|sum| sum.window(offset)).collect(), offset)

@@ -7,7 +7,6 @@ use results::{EnvelopeRow, TraceRow};
 use crate::format;
 use crate::parse::Run;
 use crate::plot::{Axis, Drawing, Hue, Mark, Plot, Series};
-use crate::whole;
 
 /// Largest number of CSV rows under one plot; of longer tables only every n-th row is kept.
 const MOST_ROWS: usize = 3_000;
@@ -30,11 +29,7 @@ pub(crate) struct Figure {
 }
 
 pub(crate) fn figures(run: &Run) -> Vec<Figure> {
-    let (data, title) = (&run.result.data, "The part that was read".to_owned());
-    let axis = Axis::linear(format!("recorded ({})", data.unit));
-    let whole = whole::figure("whole".to_owned(), title, axis, &data.reading);
-    let others = [residuals(run), loss(run), decay_rate(run), distance(run)];
-    [envelope(run), whole].into_iter().chain(others).flatten().collect()
+    [envelope(run), residuals(run), loss(run), decay_rate(run), distance(run)].into_iter().flatten().collect()
 }
 
 /// Takes the first plot for the top of the page, below the verdict.

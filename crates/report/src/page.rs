@@ -5,10 +5,13 @@ use askama::Template;
 use crate::figures::{Figure, figures, lead};
 use crate::frame::{Frame, finish};
 use crate::parse::Run;
+use crate::plot::Axis;
 use crate::remarks::is_believed;
 use crate::tables::{self, ComparisonRow, Fact, SeedView};
 use crate::verdict;
+use crate::whole;
 use crate::{ReportError, RunTexts};
+use results::DataSummary;
 
 #[derive(Template)]
 #[template(path = "run.html")]
@@ -37,6 +40,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
     )
     .disagreeing(result.disagreement.as_ref(), is_believed(&result.pipelines, &result.data));
     let mut figures = figures(run);
+    let lead = lead(&mut figures);
     let page = RunPage {
         frame: Frame { next: verdict::next(result), ..frame },
         estimator: &result.estimator_title,
@@ -50,11 +54,17 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
         .chain(result.truth.as_ref().map(|known| ("Truth of the simulated record", tables::truth(known))))
         .collect(),
         seeds: tables::seeds(&result.seeds),
-        lead: lead(&mut figures),
-        figures,
+        lead,
+        figures: part(&result.data).into_iter().chain(figures).collect(),
         has_trace: !run.trace.is_empty(),
     };
     finish(&page)
+}
+
+/// Returns the plot of the record if only a part of it was read.
+fn part(data: &DataSummary) -> Option<Figure> {
+    let axis = Axis::linear(format!("recorded ({})", data.unit));
+    whole::figure("whole".to_owned(), "The part that was read".to_owned(), axis, &data.reading)
 }
 
 #[cfg(test)]

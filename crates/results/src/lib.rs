@@ -21,6 +21,7 @@ mod modes;
 mod prediction;
 mod rigs;
 mod search;
+mod series;
 mod simulation;
 mod sweep;
 mod trials;
@@ -34,7 +35,7 @@ pub use diagnosis::{
     Backbone, BackbonePoint, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow, ClassRow,
     DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow,
     Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
-    RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, VerdictStatus,
+    RivalRow, SetRow, StageRow, SurfaceCell, VerdictStatus,
 };
 /// Origin of a record's numbers.
 pub use record::{Origin, Reading};
@@ -65,6 +66,7 @@ pub use rigs::{
 pub use search::{
     SearchBest, SearchOutcome, SweepHalving, SweepRung, SweepRungValue, SweepSampler, SweepSearch,
 };
+pub use series::SeriesRow;
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 pub use sweep::{
     LearnedScores, RunState, RunTable, RunTableRow, RunTableTask, SWEEP_SCHEMA, SweepAxis, SweepEnd,

@@ -268,13 +268,15 @@ pub fn centered(record: &Record) -> Result<Record, Fault> {
 const HALF_SWING: f64 = 0.1;
 
 /// Returns a warning if a velocity or an acceleration has a mean that no free swing has, as from a sensor's
-/// bias or gravity. Returns `None` for records with an input, which may push to one side.
+/// bias or gravity. Returns `None` for velocities with an input, which may push to one side; an acceleration averages
+/// about zero all the same.
 ///
 /// The mean of a rate is the change of the swing over the time T, divided by T: at most 2A/T. For n half
 /// swings of amplitude A it is at most 2/(πn) of the rate's own amplitude.
 #[must_use]
 pub fn bias(record: &Record) -> Option<String> {
-    if record.quantity() == Quantity::Position || record.input().is_some() {
+    let is_pushed = record.quantity() == Quantity::Velocity && record.input().is_some();
+    if record.quantity() == Quantity::Position || is_pushed {
         return None;
     }
     let values = record.values();
@@ -290,7 +292,7 @@ pub fn bias(record: &Record) -> Option<String> {
     (mean.abs() > most).then(|| {
         let what = if record.quantity() == Quantity::Velocity { "velocity" } else { "acceleration" };
         format!(
-            "the values average {}, but the {what} of a free swing averages about zero: the sensor has a \
+            "the values average {}, but the {what} of what swings averages about zero: the sensor has a \
              bias or measures gravity, and a diagnosis would name an effect for it; subtract it with \
              --remove-mean",
             quantity(&significant(mean, 3), record.unit())

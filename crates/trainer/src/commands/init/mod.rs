@@ -397,14 +397,24 @@ impl Found {
         ))
     }
 
-    /// Returns a remark if the record has no natural frequency.
+    /// Returns a remark if the record comes to rest without a swing.
     fn no_swing(&self) -> Option<String> {
-        let free = self.surest.oscillator.input_gain.is_none();
-        (free && self.surest.oscillator.natural_frequency_hz().is_none()).then(|| {
-            "no oscillation: the record comes to rest without a swing, as an overdamped or critically damped system \
-             does, or it drifts; neither a frequency nor a damping ratio can be read from it"
-                .to_owned()
-        })
+        let oscillator = &self.surest.oscillator;
+        if oscillator.input_gain.is_some() {
+            return None;
+        }
+        match oscillator.damping_ratio() {
+            Some(ratio) if ratio.value < CRITICAL => None,
+            Some(_) => Some(
+                "no oscillation: the record comes to rest without a swing, as a critically damped or overdamped system does"
+                    .to_owned(),
+            ),
+            None => Some(
+                "no oscillation: the record comes to rest without a swing, as an overdamped or critically damped system \
+                 does, or it drifts; neither a frequency nor a damping ratio can be read from it"
+                    .to_owned(),
+            ),
+        }
     }
 
     /// Returns a warning if the record is too short for its decay to show.
@@ -418,6 +428,9 @@ impl Found {
         })
     }
 }
+
+/// Damping ratio from which no swing is seen.
+const CRITICAL: f64 = 0.95;
 
 /// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
 /// records of noise, white or red, have 5 to 15 % or no frequency.
