@@ -21,6 +21,8 @@ pub(crate) struct Parsed {
     statements: Statements,
     pub(crate) findings: Vec<String>,
     pub(crate) reading: Reading,
+    /// Kind of the file if it is no text with columns.
+    pub(crate) kind: Option<&'static str>,
 }
 
 impl Parsed {
@@ -35,6 +37,7 @@ impl Parsed {
             statements,
             findings: Vec::new(),
             reading,
+            kind: None,
         }
     }
 
@@ -81,7 +84,7 @@ impl Parsed {
         findings.extend(part.map(|part| part_said(&record, &swings, part)));
         let [from_s, to_s] = part.map_or([options.from_s, options.to_s], |part| part.map(Some));
         let (record, part_s) = record.between(from_s, to_s)?;
-        let reading = Reading { quantity, coordinate, part_s, ..self.reading }.worded(rate_hz);
+        let reading = Reading { quantity, coordinate, part_s, ..self.reading }.worded(rate_hz, self.kind);
         Ok((record, self.statements, findings, reading))
     }
 }

@@ -1,5 +1,7 @@
 //! Files in the styles of other programs, all of one swing.
 
+mod instruments;
+
 use crate::{
     Clock, ClockChoice, ClockKind, CsvColumns, Filter, Missing, ReadOptions, Record, Source, TimeUnit, Unit,
     look, read_text,
@@ -412,7 +414,7 @@ fn files_that_do_not_say_enough_get_the_key_to_set() {
     for (text, expected) in [
         (
             "my angle\n0.5\n",
-            "the header has `my angle`. Set `data.time` to the column's name, or `data.sample_rate_hz`",
+            "the columns are `my angle`. Set `data.time` to the column's name, or `data.sample_rate_hz`",
         ),
         ("t,foo,bar\n0,1,2\n1,2,3\n", "`foo`, `bar` could each be the observed column; set `data.value`"),
         ("time_s,angle_deg\n0,01,29,20\n", "r.csv:2: 4 fields under a header of 2; "),
