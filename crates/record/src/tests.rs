@@ -295,7 +295,9 @@ fn another_column_that_could_be_observed_is_told() {
 
 #[test]
 fn the_nominal_coordinate_chooses_among_columns() {
-    let text = file("time_s,angle_rad,displacement_mm,command", |_, t, a| format!("{t},{a},{},{a}", 2e3 * a));
+    let text = file("time_s,angle_rad,displacement_mm,command", |_, t, a| {
+        format!("{t},{a},{},{}", 2e3 * a, 0.6 * (5.0 * t).cos())
+    });
     let options =
         |coordinate| ReadOptions { coordinate: Some(coordinate), driven: true, ..ReadOptions::default() };
     let (record, source) =
