@@ -10,7 +10,7 @@ use crate::error::Fault;
 use crate::heading::{Heading, Measure};
 use crate::options::ReadOptions;
 use crate::parsed::Parsed;
-use crate::reading::{ColumnReading, NO_SEPARATOR, Reading};
+use crate::reading::{ColumnReading, Reading};
 use crate::record::{InputRow, Quantity};
 use crate::roles::{Column, Kind, Pick, Roles, assumed_unit, quantity};
 use crate::runs::one_after_another;
@@ -108,8 +108,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let (input_factor, input_reading) = input_scale(&table, input, observed.unit, options, &mut findings);
     let reading = Reading {
         format: "csv".to_owned(),
-        separator: if table.columns.len() > 1 { table.layout.dialect.name() } else { NO_SEPARATOR }
-            .to_owned(),
+        separator: table.separator().to_owned(),
         decimal: if table.layout.dialect.decimal_comma { "comma" } else { "point" }.to_owned(),
         header_line: table.layout.line,
         run,

@@ -85,7 +85,9 @@ impl Parsed {
         let [from_s, to_s] = part.map_or([options.from_s, options.to_s], |part| part.map(Some));
         let (record, part_s) = record.between(from_s, to_s)?;
         let reading = Reading { quantity, coordinate, part_s, ..self.reading }.worded(rate_hz, self.kind);
-        Ok((record, self.statements, findings, reading))
+        // A stated number of samples is that of the whole file.
+        let samples = self.statements.samples.filter(|_| part_s.is_none());
+        Ok((record, Statements { samples, ..self.statements }, findings, reading))
     }
 }
 

@@ -6,6 +6,7 @@ use crate::dialect::{self, Layout, is_missing};
 use crate::error::Fault;
 use crate::heading::Heading;
 use crate::line::Line;
+use crate::reading::NO_SEPARATOR;
 use crate::roles::{Column, Kind, Pick};
 use crate::runs::{Run, runs};
 use crate::words::counted;
@@ -64,6 +65,11 @@ impl<'a> Table<'a> {
             .map(|(at, title)| Column { heading: Heading::parse(title, below(at)), kind: kind(at) })
             .collect();
         Ok(Self { layout, columns })
+    }
+
+    /// Returns the separator of the columns in words.
+    pub(crate) fn separator(&self) -> &'static str {
+        if self.columns.len() > 1 { self.layout.dialect.name() } else { NO_SEPARATOR }
     }
 
     pub(crate) fn title(&self, at: usize) -> &str {
