@@ -78,6 +78,7 @@ fn a_column_that_the_motion_does_not_follow_is_no_input() {
     for (title, of) in [
         ("battery_voltage", (|row| 12.0 + 0.01 * (f64::from(row) * 0.7).sin()) as fn(u32) -> f64),
         ("command", |_| 1.0),
+        ("force_n", |row| 0.02 * (f64::from(row).powi(2) * 0.37).sin()),
     ] {
         let line = |row: u32| {
             let time = f64::from(row) * 0.01;
@@ -92,8 +93,28 @@ fn a_column_that_the_motion_does_not_follow_is_no_input() {
             assert_eq!(found["oscillator"]["input_gain_per_inertia"], Value::Null, "{call}");
             let frequency = number(&found, "/oscillator/natural_frequency_hz/value");
             assert!((frequency - 1.0).abs() < 1e-3, "{call}: {frequency}");
+            assert!(found["next"][0].as_str().unwrap().ends_with(" --input none"), "{}", found["next"]);
+            let said = format!("`{title}` was not taken as the input, since the motion does not follow it");
+            assert_eq!(found["record"]["findings"].to_string().contains(&said), asked.is_empty(), "{found}");
+            let output = shell(&format!("{} --json", found["next"][1].as_str().unwrap()), scratch.path());
+            let ratio = number(&self::said(&output), "/estimate/zeta");
+            assert!((ratio * TAU / 0.1 - 1.0).abs() < 0.01, "{call}: {ratio}");
         }
     }
+}
+
+/// Regression: `--clock` was ignored, and a stated rate was not compared with the stamps.
+#[test]
+fn a_clock_that_is_asked_for_is_used_and_a_stated_rate_compared() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (_, text, _, _) = files().swap_remove(0);
+    write(scratch.path(), "log.csv", &format!("# sample_rate_hz: 50\n{text}"));
+    let found = said(&shell("trainer init log.csv --clock host --json", scratch.path()));
+    assert_eq!(found["record"]["clock"], "host", "{found}");
+    assert!(found["record"]["findings"].to_string().contains("not the stated 50 Hz"), "{found}");
+    assert!(found["next"][0].as_str().unwrap().ends_with(" --clock host"), "{}", found["next"]);
+    let written = std::fs::read_to_string(scratch.path().join("log/estimate.toml")).unwrap();
+    assert!(written.lines().any(|line| line == "clock = \"host\""), "{written}");
 }
 
 /// Noise has a strongest spectral line, as a swing has, but its frequency is uncertain.
@@ -201,7 +222,7 @@ fn a_folder_that_is_none_of_logs_is_refused() {
     for line in ["trainer init empty", "trainer diagnose empty --nominal nominal.toml"] {
         refused(
             line,
-            "empty: holds no log: no file in it ends in .csv, .tsv, .txt, .log or .dat; name the records",
+            "empty: holds no log: no file in it has one of the endings .csv, .tsv, .lvm, .npy, .npz, .wav, .txt,",
         );
     }
     std::fs::create_dir_all(scratch.path().join("day/morning")).unwrap();

@@ -3,6 +3,7 @@
 use crate::coding::decoded;
 use crate::columns::{CsvColumns, Missing};
 use crate::copies::copies;
+use crate::dates::DateOrder;
 use crate::dialect::{self, is_missing};
 use crate::doubts::{contradiction, doubtful_unit, odd_rate, unknown_unit};
 use crate::error::Fault;
@@ -27,6 +28,8 @@ struct Samples {
     lines: Vec<u64>,
     /// Numbers of the lines among the chosen lines.
     numbers: Vec<usize>,
+    /// Order of day and month in the time column.
+    order: DateOrder,
     stamps: Vec<Stamp>,
     /// `None` on a line that lacks only the observed cell: its input still acts.
     values: Vec<Option<f64>>,
@@ -85,7 +88,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let time = roles.time()?;
     let (value, also) = roles.value(time, &|at| Swing::of(&table.numbers(at, &rows)))?;
     let taken: Vec<usize> = [Some(value), time].into_iter().flatten().map(|pick| pick.at).collect();
-    let (input, note) = roles.input(&taken)?;
+    let (input, note) = roles.input(&taken, &|at| table.is_affine([value.at, at], &rows))?;
     if let Some(fault) = filter.is_none().then(|| table.series(false)).flatten() {
         return Err(fault);
     }
@@ -105,7 +108,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let (input_factor, input_reading) = input_scale(&table, input, observed.unit, options, &mut findings);
     let reading = Reading {
         format: "csv".to_owned(),
-        separator: table.layout.dialect.name().to_owned(),
+        separator: table.separator().to_owned(),
         decimal: if table.layout.dialect.decimal_comma { "comma" } else { "point" }.to_owned(),
         header_line: table.layout.line,
         run,
@@ -263,7 +266,10 @@ fn read(
     let (held, finding) = table.held(chosen.input, chosen.value, rows);
     // The observed column is always among them.
     let needed = columns.iter().max().map_or(0, |at| at + 1);
-    let mut reader = Reader { table, chosen, treated, held, last_input: None, samples: Samples::default() };
+    let times =
+        chosen.time.into_iter().flat_map(|time| rows.iter().filter_map(move |(_, row)| row.get(time.at)));
+    let samples = Samples { order: DateOrder::of(times.copied()), ..Samples::default() };
+    let mut reader = Reader { table, chosen, treated, held, last_input: None, samples };
     let mut number = 0;
     for (line, row) in rows {
         // A row that ends before the column has an empty cell there.
@@ -373,7 +379,7 @@ impl<'a> Reader<'a> {
     fn stamp(&mut self, line: u64, cell: &dyn Fn(usize) -> &'a str) -> Result<(), Fault> {
         let (table, Some(time)) = (self.table, self.chosen.time) else { return Ok(()) };
         let stamp = |at: usize| {
-            Stamp::parse(cell(at), table.layout.dialect)
+            Stamp::parse(cell(at), table.layout.dialect, self.samples.order)
                 .ok_or_else(|| not_a_number(table, line, at, cell(at)))
         };
         let whole = stamp(time.at)?;
@@ -427,6 +433,11 @@ fn stamps(
     }
     let stated = [asked.time_unit, named.filter(|_| !dates)].map(|unit| unit.map(TimeUnit::name));
     let findings = match how {
+        _ if dates && samples.order.is_assumed => Some(format!(
+            "the dates in `{}` do not tell day and month apart and were read with the month first; if the day is first, \
+             write them with dots, as 14.06.2023",
+            heading.title
+        )),
         Told::Assumed => odd_rate(&seconds),
         Told::Whole => Some(format!(
             "the time column states no unit; its whole numbers were taken to be in {}, another with `data.time_unit`",

@@ -1,5 +1,6 @@
 //! Detection of a file's dialect and layout: separator, decimal sign, comments, header, line of units.
 
+use crate::dates::is_date;
 use crate::error::Fault;
 use crate::heading::measure_of;
 use std::borrow::Cow;
@@ -128,16 +129,6 @@ pub(crate) fn is_missing(text: &str) -> bool {
     bare.is_empty() || WORDS.iter().any(|word| bare.eq_ignore_ascii_case(word))
 }
 
-/// Returns `true` if a cell is a date or a time of day.
-pub(crate) fn is_date(text: &str) -> bool {
-    let digits = text.chars().filter(char::is_ascii_digit).count();
-    let colons = text.matches(':').count();
-    text.starts_with(|sign: char| sign.is_ascii_digit())
-        && digits >= 4
-        && (colons >= 1 || text.matches('-').count() == 2)
-        && text.chars().all(|sign| sign.is_ascii_digit() || " :-+.,TtZz[]/".contains(sign))
-}
-
 /// Returns the content of a comment line, or `None` for other lines.
 fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
@@ -188,6 +179,7 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     }
     let (line, header) = row(at);
     let after = at + 1 + usize::from(units.is_some());
+    let units = units.or_else(|| units_of_scope(dialect, above));
     // The header may be the last line.
     let rows = lines.get(after..).unwrap_or_default();
     // Skips a rule of dashes below the header.
@@ -199,6 +191,18 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     };
     let titles = dialect.split(header).into_iter().map(Cow::Borrowed).collect();
     Ok(Layout { dialect, line, titles, units, preamble: at, rows: rows.to_vec() })
+}
+
+/// Returns the units that Tektronix' oscilloscopes write among the facts above the header, in a line for the
+/// time and in one for the channels.
+fn units_of_scope<'a>(dialect: Dialect, above: &[(u64, &'a str)]) -> Option<Vec<&'a str>> {
+    let fact = |name: &str| {
+        above.iter().map(|(_, line)| dialect.split(line)).find(|cells| cells.first() == Some(&name))
+    };
+    let time = fact("Horizontal Units").and_then(|cells| cells.get(1).copied());
+    let channels = fact("Vertical Units")?.into_iter().skip(1);
+    // A time without a unit is in seconds.
+    Some(std::iter::once(time.unwrap_or("s")).chain(channels).collect())
 }
 
 fn is_unit(cell: &str) -> bool {

@@ -89,7 +89,7 @@ pub enum Fault {
         last_s: f64,
     },
     /// A column is missing.
-    #[error("there is no column `{wanted}`; the header has {found}. Set `{key}` to the column's name")]
+    #[error("there is no column `{wanted}`; the columns are {found}. Set `{key}` to the column's name")]
     MissingColumn {
         /// Line of the header, from 1.
         line: u64,
@@ -113,7 +113,7 @@ pub enum Fault {
     },
     /// There is neither a time column nor a sampling rate.
     #[error(
-        "no column is a time by its name or its unit; the header has {found}. Set `data.time` to the column's \
+        "no column is a time by its name or its unit; the columns are {found}. Set `data.time` to the column's \
          name, or `data.sample_rate_hz` where the samples are even and have no stamps"
     )]
     NoTime {

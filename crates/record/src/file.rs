@@ -1,6 +1,6 @@
 //! Reading of a file into a record and its source.
 
-use crate::container;
+use crate::container::{self, Contained};
 use crate::csv_file;
 use crate::error::{Fault, RecordError};
 use crate::host_log;
@@ -42,31 +42,32 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source),
 /// As [`read_file`].
 pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Record, Source), RecordError> {
     let parse = || {
-        let text = table_text(bytes)?;
+        let (text, kind) = table_text(bytes)?;
         // Spreadsheets write a byte-order mark at the beginning.
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         if text.trim().is_empty() {
             return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
         }
-        match options.format {
+        let mut parsed = match options.format {
             Format::HostLog => host_log::parse(text),
             Format::Auto if is_host_log(text, options) => host_log::parse(text),
             Format::Auto | Format::Csv => csv_file::parse(text, options),
-        }?
-        .finish(options)
+        }?;
+        parsed.kind = kind;
+        parsed.finish(options)
     };
     let (record, statements, findings, reading) = parse().map_err(|fault| fault.in_file(name))?;
     let source = Source { path: name.to_owned(), digest: digest(bytes), statements, findings, reading };
     Ok((record, source))
 }
 
-/// Returns the text of a table: that of the file, or the one into which its container is turned.
-pub(crate) fn table_text(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
-    match container::text(bytes) {
-        Some(table) => {
-            table.map(Cow::Owned).map_err(|unread| Fault::Container { problem: unread.to_string() })
-        }
-        None => text_of(bytes),
+/// Returns the text of a table: that of the file, or the one into which its container is turned, with the kind
+/// of the container.
+pub(crate) fn table_text(bytes: &[u8]) -> Result<(Cow<'_, str>, Option<&'static str>), Fault> {
+    match container::table(bytes) {
+        Some(Ok(Contained { kind, text })) => Ok((Cow::Owned(text), Some(kind))),
+        Some(Err(unread)) => Err(Fault::Container { problem: unread.to_string() }),
+        None => Ok((text_of(bytes)?, None)),
     }
 }
 

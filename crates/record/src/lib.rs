@@ -13,6 +13,7 @@ mod columns;
 mod container;
 mod copies;
 mod csv_file;
+mod dates;
 mod dialect;
 mod doubts;
 mod error;

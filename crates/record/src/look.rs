@@ -47,7 +47,7 @@ pub fn look(path: &Path, options: &ReadOptions) -> Result<Look, RecordError> {
     let bytes = bytes_of(path)?;
     let (record, source) = read_text(&name, &bytes, options)?;
     let clock = Clock::new(&record, ClockChoice::Auto).map_err(|fault| fault.in_file(&name))?;
-    let text = table_text(&bytes).map_err(|fault| fault.in_file(&name))?;
+    let (text, _) = table_text(&bytes).map_err(|fault| fault.in_file(&name))?;
     let columns = match source.reading.format.as_str() {
         "csv" => columns(text.trim_start_matches('\u{feff}'), &source),
         _ => Vec::new(),

@@ -21,6 +21,8 @@ pub(crate) struct Parsed {
     statements: Statements,
     pub(crate) findings: Vec<String>,
     pub(crate) reading: Reading,
+    /// Kind of the file if it is no text with columns.
+    pub(crate) kind: Option<&'static str>,
 }
 
 impl Parsed {
@@ -35,6 +37,7 @@ impl Parsed {
             statements,
             findings: Vec::new(),
             reading,
+            kind: None,
         }
     }
 
@@ -83,8 +86,11 @@ impl Parsed {
         let whole = Whole::new(&record, swings.iter().filter_map(|swing| ends(&record, swing)).collect());
         let (record, part_s) = record.between(from_s, to_s)?;
         let whole = part_s.map(|_| whole);
-        let reading = Reading { quantity, coordinate, part_s, whole, ..self.reading }.worded(rate_hz);
-        Ok((record, self.statements, findings, reading))
+        let reading =
+            Reading { quantity, coordinate, part_s, whole, ..self.reading }.worded(rate_hz, self.kind);
+        // A stated number of samples is that of the whole file.
+        let samples = self.statements.samples.filter(|_| part_s.is_none());
+        Ok((record, Statements { samples, ..self.statements }, findings, reading))
     }
 }
 

@@ -29,6 +29,9 @@ pub struct ColumnReading {
     pub because: String,
 }
 
+/// Separator of a file with a single column.
+pub(crate) const NO_SEPARATOR: &str = "none";
+
 impl ColumnReading {
     /// Returns `true` if the unit is that of the header.
     #[must_use]
@@ -74,7 +77,7 @@ pub struct Reading {
     pub sentence: String,
     /// Format: `csv` or `host-log`.
     pub format: String,
-    /// Separator of the columns: `comma`, `semicolon`, `tab`, `blank` or `bar`.
+    /// Separator of the columns: `comma`, `semicolon`, `tab`, `blank` or `bar`; `none` for a single column.
     pub separator: String,
     /// Decimal sign: `point` or `comma`.
     pub decimal: String,
@@ -142,8 +145,8 @@ impl Reading {
         options
     }
 
-    /// Returns the reading with its sentence.
-    pub(crate) fn worded(self, rate_hz: f64) -> Self {
+    /// Returns the reading with its sentence. `kind` is that of a file that is no text with columns.
+    pub(crate) fn worded(self, rate_hz: f64, kind: Option<&str>) -> Self {
         let column = |role: &str, read: &ColumnReading| match &read.unit {
             Some(unit) if unit == TimeUnit::Iso.name() => {
                 format!("{role} = \"{}\", dates or times of the day", read.column)
@@ -155,8 +158,10 @@ impl Reading {
             None if read.because.contains("; counts, ") => format!("{role} = \"{}\" in counts", read.column),
             None => format!("{role} = \"{}\" as it is", read.column),
         };
-        let mut first = match self.format.as_str() {
-            "host-log" => "a host log".to_owned(),
+        let mut first = match (self.format.as_str(), kind) {
+            ("host-log", _) => "a host log".to_owned(),
+            (_, Some(kind)) => kind.to_owned(),
+            _ if self.separator == NO_SEPARATOR => "a single column".to_owned(),
             _ => format!("{}-separated", self.separator),
         };
         if self.decimal == "comma" {

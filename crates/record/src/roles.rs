@@ -446,19 +446,24 @@ impl Roles<'_> {
         Some((other, order, rank, heading.unit().is_some_and(|unit| unit.to_si() != 1.0)))
     }
 
-    /// Returns the input, if there is one, and a sentence if several columns could be it. Torques and forces
-    /// are accepted; commands and voltages only if the system is known to be driven.
-    pub(crate) fn input(&self, taken: &[usize]) -> Result<(Option<Pick>, Option<String>), Fault> {
+    /// Returns the input, if there is one, and sentences if several columns could be it. Torques and forces are
+    /// accepted; commands and voltages only if the system is known to be driven. `is_observed` tells a column that
+    /// is the observed one in other units, as a sensor's own voltage is.
+    pub(crate) fn input(
+        &self,
+        taken: &[usize],
+        is_observed: &dyn Fn(usize) -> bool,
+    ) -> Result<(Option<Pick>, Vec<String>), Fault> {
         if let Some(name) = &self.asked().input {
             let named = self.named(name, "data.input");
             if name == NO_INPUT && named.is_err() {
-                return Ok((None, None));
+                return Ok((None, Vec::new()));
             }
             let at = named?;
             if taken.contains(&at) {
                 return Err(Fault::InputIsTaken { line: self.line, column: name.clone() });
             }
-            return Ok((Some(Pick { at, because: NAMED }), None));
+            return Ok((Some(Pick { at, because: NAMED }), Vec::new()));
         }
         let score = |heading: &Heading| {
             let torque = rank(heading, TORQUES).map(|_| 0);
@@ -466,29 +471,38 @@ impl Roles<'_> {
             let other = rank(heading, INPUTS).map(|rank| 2 + rank).filter(|_| self.options.driven);
             torque.or(by_unit).or(other)
         };
-        let mut found: Vec<(usize, usize)> = self
+        let candidates = self
             .columns
             .iter()
             .enumerate()
             .filter(|(at, column)| column.kind == Kind::Numbers && !taken.contains(at))
-            .filter_map(|(at, column)| Some((score(&column.heading)?, at)))
-            .collect();
+            .filter_map(|(at, column)| Some((score(&column.heading)?, at)));
+        let (observed, mut found): (Vec<_>, Vec<_>) = candidates.partition(|(_, at)| is_observed(*at));
         found.sort_unstable();
-        match found.as_slice() {
-            [] => Ok((None, None)),
+        let mut said: Vec<String> =
+            observed.iter().filter_map(|(_, at)| self.is_observed_said(*at)).collect();
+        let input = match found.as_slice() {
+            [] => None,
             [(best, _), (next, _), ..] if best == next => {
                 let titles = self.titles(|column| score(&column.heading) == Some(*best));
                 if self.options.driven {
                     return Err(self.ambiguous("the input", titles, "data.input"));
                 }
-                Ok((
-                    None,
-                    Some(format!(
-                        "{titles} could each be the input and none was taken; name one with `data.input`"
-                    )),
-                ))
+                said.push(format!(
+                    "{titles} could each be the input and none was taken; name one with `data.input`"
+                ));
+                None
             }
-            [(_, at), ..] => Ok((Some(Pick { at: *at, because: BY_NAME }), None)),
-        }
+            [(_, at), ..] => Some(Pick { at: *at, because: BY_NAME }),
+        };
+        Ok((input, said))
+    }
+
+    fn is_observed_said(&self, at: usize) -> Option<String> {
+        let title = &self.columns.get(at)?.heading.title;
+        Some(format!(
+            "`{title}` is the observed column in other units, as a sensor's own signal is, and was not taken as the input; \
+             name it with `data.input` if it drives the system"
+        ))
     }
 }

@@ -1,9 +1,12 @@
 //! Table of a text: its layout with the headings and kinds of its columns.
 
 use crate::columns::{CsvColumns, Filter};
-use crate::dialect::{self, Layout, is_date, is_missing};
+use crate::dates::is_date;
+use crate::dialect::{self, Layout, is_missing};
 use crate::error::Fault;
 use crate::heading::Heading;
+use crate::line::Line;
+use crate::reading::NO_SEPARATOR;
 use crate::roles::{Column, Kind, Pick};
 use crate::runs::{Run, runs};
 use crate::words::counted;
@@ -13,6 +16,9 @@ use std::collections::BTreeSet;
 const TOLD_FROM: usize = 200;
 /// Largest number of values of a column that distinguishes series.
 const MOST_SERIES: usize = 40;
+/// Largest part of a column's variance by which its numbers may be off another column in other units: 1 % of its
+/// root mean square, as a sensor's voltage is from the rounded angle that was computed from it.
+const ROUNDED: f64 = 1e-4;
 /// Names of columns that distinguish series.
 const SERIES: &[&str] =
     &["joint", "axis", "motor", "channel", "sensor", "body", "link", "servo", "name", "id"];
@@ -59,6 +65,11 @@ impl<'a> Table<'a> {
             .map(|(at, title)| Column { heading: Heading::parse(title, below(at)), kind: kind(at) })
             .collect();
         Ok(Self { layout, columns })
+    }
+
+    /// Returns the separator of the columns in words.
+    pub(crate) fn separator(&self) -> &'static str {
+        if self.columns.len() > 1 { self.layout.dialect.name() } else { NO_SEPARATOR }
     }
 
     pub(crate) fn title(&self, at: usize) -> &str {
@@ -108,6 +119,19 @@ impl<'a> Table<'a> {
     /// Returns the numbers in a column, without the cells that hold none.
     pub(crate) fn numbers(&self, at: usize, rows: &[(u64, Vec<&str>)]) -> Vec<f64> {
         rows.iter().filter_map(|(_, row)| self.layout.dialect.number(row.get(at)?)).collect()
+    }
+
+    /// Returns `true` if one column is another one in other units, except for [`ROUNDED`] of its variance.
+    pub(crate) fn is_affine(&self, columns: [usize; 2], rows: &[(u64, Vec<&str>)]) -> bool {
+        let pair = |row: &Vec<&str>| {
+            let [x, y] = columns.map(|at| self.layout.dialect.number(row.get(at)?));
+            x.zip(y)
+        };
+        let points: Vec<(f64, f64)> = rows.iter().filter_map(|(_, row)| pair(row)).collect();
+        let line = Line::through(&points);
+        // Of the second column's variance, that along the line is the slope's. A column that stands still is affine
+        // to none: it has neither.
+        line.squares() < ROUNDED * line.slope.powi(2) * line.spread_x
     }
 
     /// Returns the columns of which only those of one run have a title and a content.

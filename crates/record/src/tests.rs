@@ -1,5 +1,7 @@
 //! Files in the styles of other programs, all of one swing.
 
+mod instruments;
+
 use crate::{
     Clock, ClockChoice, ClockKind, CsvColumns, Filter, Missing, ReadOptions, Record, Source, TimeUnit, Unit,
     look, read_text,
@@ -293,7 +295,9 @@ fn another_column_that_could_be_observed_is_told() {
 
 #[test]
 fn the_nominal_coordinate_chooses_among_columns() {
-    let text = file("time_s,angle_rad,displacement_mm,command", |_, t, a| format!("{t},{a},{},{a}", 2e3 * a));
+    let text = file("time_s,angle_rad,displacement_mm,command", |_, t, a| {
+        format!("{t},{a},{},{}", 2e3 * a, 0.6 * (5.0 * t).cos())
+    });
     let options =
         |coordinate| ReadOptions { coordinate: Some(coordinate), driven: true, ..ReadOptions::default() };
     let (record, source) =
@@ -412,7 +416,7 @@ fn files_that_do_not_say_enough_get_the_key_to_set() {
     for (text, expected) in [
         (
             "my angle\n0.5\n",
-            "the header has `my angle`. Set `data.time` to the column's name, or `data.sample_rate_hz`",
+            "the columns are `my angle`. Set `data.time` to the column's name, or `data.sample_rate_hz`",
         ),
         ("t,foo,bar\n0,1,2\n1,2,3\n", "`foo`, `bar` could each be the observed column; set `data.value`"),
         ("time_s,angle_deg\n0,01,29,20\n", "r.csv:2: 4 fields under a header of 2; "),

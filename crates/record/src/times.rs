@@ -1,11 +1,9 @@
 //! Conversion of a file's time column to stamps in seconds.
 
-use crate::dialect::{Dialect, is_date};
+use crate::dates::{DateOrder, is_date, nanoseconds};
+use crate::dialect::Dialect;
 use crate::statistics::upper_median;
 use crate::unit::TimeUnit;
-use jiff::Timestamp;
-use jiff::civil::{DateTime, Time};
-use jiff::tz::TimeZone;
 
 /// A stamp as written: whole units and a fraction, so that nanoseconds since 1970 keep their differences.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,9 +19,9 @@ const LARGEST_KEPT_S: f64 = 1e6;
 
 impl Stamp {
     /// Parses a cell; dates and times of day are in nanoseconds.
-    pub(crate) fn parse(text: &str, dialect: Dialect) -> Option<Self> {
+    pub(crate) fn parse(text: &str, dialect: Dialect, order: DateOrder) -> Option<Self> {
         if is_date(text) {
-            return date(text).map(|whole| Self { whole, fraction: 0.0 });
+            return nanoseconds(text, order).map(|whole| Self { whole, fraction: 0.0 });
         }
         let value = dialect.number(text)?;
         let point = if dialect.decimal_comma { ',' } else { '.' };
@@ -51,21 +49,6 @@ impl Stamp {
         let whole = (self.value() as i128).saturating_mul(1_000_000_000);
         Self { whole: whole.saturating_add(nanoseconds.value() as i128), fraction: 0.0 }
     }
-}
-
-/// Parses ISO 8601 with or without an offset, with a blank in place of the T, or a time of day, in
-/// nanoseconds.
-fn date(text: &str) -> Option<i128> {
-    let text = text.trim().replace(',', ".").replace('/', "-");
-    if let Ok(stamp) = text.replacen(' ', "T", 1).parse::<Timestamp>() {
-        return Some(stamp.as_nanosecond());
-    }
-    if let Ok(date) = text.replacen(' ', "T", 1).parse::<DateTime>() {
-        return Some(date.to_zoned(TimeZone::UTC).ok()?.timestamp().as_nanosecond());
-    }
-    let time: Time = text.parse().ok()?;
-    let seconds = i128::from(time.hour()) * 3600 + i128::from(time.minute()) * 60 + i128::from(time.second());
-    Some(seconds * 1_000_000_000 + i128::from(time.subsec_nanosecond()))
 }
 
 /// Stamps in seconds, their original unit, and how that unit was determined.
@@ -145,12 +128,15 @@ fn since_1970(stamp: f64) -> Option<TimeUnit> {
 #[cfg(test)]
 mod tests {
     use super::{Stamp, seconds};
+    use crate::dates::DateOrder;
     use crate::dialect::Dialect;
     use crate::unit::TimeUnit;
 
     fn read(cells: &[&str], unit: Option<TimeUnit>) -> (Vec<f64>, TimeUnit) {
         let dialect = Dialect { separator: ',', decimal_comma: false };
-        let stamps: Vec<Stamp> = cells.iter().map(|cell| Stamp::parse(cell, dialect).unwrap()).collect();
+        let order = DateOrder::of(cells.iter().copied());
+        let stamps: Vec<Stamp> =
+            cells.iter().map(|cell| Stamp::parse(cell, dialect, order).unwrap()).collect();
         let times = seconds(&stamps, unit, cells[0].contains(':'));
         (times.seconds, times.unit)
     }
@@ -177,6 +163,13 @@ mod tests {
             ["2024-05-01T12:00:00.125+02:00", "2024-05-01T12:00:00.250+02:00"],
             ["16:04:31.125", "16:04:31.250"],
             ["23:59:59.950", "00:00:00.075"],
+            ["14.06.2023 10:00:00.125", "14.06.2023 10:00:00,250"],
+            ["30.6.23 23:59:59.950", "1.7.23 0:00:00.075"],
+            ["06/14/2023 9:59:59.950 AM", "06/14/2023 10:00:00.075 am"],
+            ["11/30/2023 11:59:59.950 PM", "12/1/2023 12:00:00.075AM"],
+            ["30/11/2023 23:59:59.950", "01/12/2023 00:00:00.075"],
+            ["2023/11/30 12:59:59.950 PM", "2023/11/30 1:00:00.075 PM"],
+            ["12:59:59.950 PM", "01:00:00.075 PM"],
         ] {
             assert_eq!(read(&cells, None), (vec![0.0, 0.125], TimeUnit::Iso), "{cells:?}");
         }

@@ -29,7 +29,7 @@ mod repair;
 mod result;
 
 pub use error::{WorkflowError, in_options};
-pub use logs::{is_log, is_run, logs};
+pub use logs::{is_log, is_run, left_out, logs};
 pub use modes::{mode_rows, modes};
 pub use question::{Answer, Question};
 pub use read::{Given, Loaded, Reading};

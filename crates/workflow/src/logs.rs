@@ -3,12 +3,18 @@
 use crate::error::WorkflowError;
 use std::path::{Path, PathBuf};
 
-/// Extensions of files that hold tables.
-const TABLES: &[&str] = &["csv", "tsv"];
+/// Extensions of files that hold samples.
+const TABLES: &[&str] = &["csv", "tsv", "lvm", "npy", "npz", "wav"];
 /// Extensions of text files that may hold a table.
 const TEXTS: &[&str] = &["txt", "log", "dat"];
+/// Extensions of documents that seldom hold a table.
+const DOCUMENTS: &[&str] = &["json", "jsonl", "ndjson"];
+/// Beginnings of the names of the file with the samples in an export of phyphox. Beside it there may be tables
+/// that the app computed from the samples.
+const RAW: &[&str] = &["raw data", "rohdaten"];
 
-/// Returns `true` if a file is a log by its name: one that ends in `.csv`, `.tsv`, `.txt`, `.log` or `.dat`.
+/// Returns `true` if a file is a log by its name: one with an ending of [`logs`], except JSON, in which programs
+/// write much else.
 #[must_use]
 pub fn is_log(path: &Path) -> bool {
     path.is_file() && (ends_in(path, TABLES) || ends_in(path, TEXTS))
@@ -22,8 +28,10 @@ pub fn is_run(folder: &Path) -> bool {
 
 /// Returns the logs at a path: a file itself, or the logs in a folder, sorted by name.
 ///
-/// In a folder these are the files that end in `.csv` or `.tsv`; if there are none, those that end in `.txt`,
-/// `.log` or `.dat`. Hidden files and subfolders are skipped.
+/// In a folder these are the files that end in `.csv`, `.tsv`, `.lvm`, `.npy`, `.npz` or `.wav`; if there are
+/// none, those that end in `.txt`, `.log` or `.dat`, or else in `.json`, `.jsonl` or `.ndjson`. Beside raw data
+/// of phyphox, the results that the app computed from them are skipped ([`left_out`]), as are hidden files and
+/// subfolders.
 ///
 /// # Errors
 /// [`WorkflowError::NoLogs`] for a folder without a log, and for the folder of a finished run, whose tables
@@ -46,10 +54,31 @@ pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
     })?;
     let found = among(&entries);
     if found.is_empty() {
-        let problem = "holds no log: no file in it ends in .csv, .tsv, .txt, .log or .dat".to_owned();
+        let endings = [TABLES, TEXTS, DOCUMENTS].concat().join(", .");
+        let problem = format!("holds no log: no file in it has one of the endings .{endings}");
         return Err(none(problem, elsewhere(&folder, &entries)));
     }
     Ok(found)
+}
+
+/// Returns a sentence on the results of phyphox that [`logs`] skips in a folder, if there are some.
+#[must_use]
+pub fn left_out(path: &Path) -> Option<String> {
+    let tables = of(&entries(path).ok()?, TABLES);
+    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let (raw, others): (Vec<&PathBuf>, Vec<&PathBuf>) = tables.iter().partition(|path| is_raw(path));
+    let [raw, others] = [raw, others].map(|files| files.into_iter().map(name).collect::<Vec<_>>().join(", "));
+    (!raw.is_empty() && !others.is_empty()).then(|| {
+        format!(
+            "only {raw} was read, since the tables beside it are computed from it: {others}; to read one of those, name the file"
+        )
+    })
+}
+
+fn is_raw(path: &Path) -> bool {
+    // A path without a name is that of no file.
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    RAW.iter().any(|raw| name.starts_with(raw))
 }
 
 /// Returns the entries of a folder that are not hidden, sorted by name.
@@ -67,11 +96,18 @@ fn entries(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 
 /// Selects the logs among the entries of a folder.
 fn among(entries: &[PathBuf]) -> Vec<PathBuf> {
-    let of = |endings: &[&str]| -> Vec<PathBuf> {
-        entries.iter().filter(|path| path.is_file() && ends_in(path, endings)).cloned().collect()
-    };
-    let tables = of(TABLES);
-    if tables.is_empty() { of(TEXTS) } else { tables }
+    let kinds = [TABLES, TEXTS, DOCUMENTS].into_iter().map(|endings| of(entries, endings));
+    // A folder without a file of these kinds holds no log.
+    let mut found = kinds.into_iter().find(|found| !found.is_empty()).unwrap_or_default();
+    if found.iter().any(|path| is_raw(path)) {
+        found.retain(|path| is_raw(path));
+    }
+    found
+}
+
+/// Returns the files with certain endings among the entries of a folder.
+fn of(entries: &[PathBuf], endings: &[&str]) -> Vec<PathBuf> {
+    entries.iter().filter(|path| path.is_file() && ends_in(path, endings)).cloned().collect()
 }
 
 /// Suggests what to name in place of a folder that holds no log.
@@ -100,7 +136,7 @@ fn ends_in(path: &Path, endings: &[&str]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::logs;
+    use super::{left_out, logs};
     use std::path::Path;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -120,6 +156,15 @@ mod tests {
         assert_eq!(names(&within("texts", &["notes.txt", "a.LOG", "x.png"])), ["a.LOG", "notes.txt"]);
         let tables = ["b.CSV", "a.csv", "c.tsv", ".hidden.csv", "nominal.toml", "notes.txt"];
         assert_eq!(names(&within("tables", &tables)), ["a.csv", "b.CSV", "c.tsv"]);
+        let phone = within("phone", &["Raw Data.csv", "Autocorrelation.csv", "Resonance.csv"]);
+        assert_eq!(names(&phone), ["Raw Data.csv"]);
+        let said =
+            "Autocorrelation.csv, Resonance.csv was left out, since a table beside Raw Data.csv is computed";
+        assert!(left_out(&phone).unwrap().starts_with(said), "{:?}", left_out(&phone));
+        assert_eq!(left_out(&scratch.path().join("tables")), None);
+        for file in ["a.lvm", "a.npy", "a.npz", "a.wav", "a.json", "a.jsonl", "a.ndjson"] {
+            assert_eq!(names(&within(file.trim_start_matches("a."), &[file])), [file]);
+        }
         let file = scratch.path().join("x.csv");
         assert_eq!(logs(&file).unwrap(), [file], "a file stands for itself");
         let refused = |folder: &Path, expected: &str| {

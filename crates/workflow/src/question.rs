@@ -1,7 +1,7 @@
 //! Diagnosis question (records of one system and its nominal simulator) and its answer.
 
 use crate::error::WorkflowError;
-use crate::logs::logs;
+use crate::logs::{left_out, logs};
 use crate::nominal;
 use crate::read::{Given, Loaded, Reading};
 use crate::repair::repaired;
@@ -56,9 +56,18 @@ impl Question {
     pub fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, WorkflowError> {
         let stated = nominal::read(nominal)?;
         let reading = reading.clone().for_nominal(&stated);
-        let paths = records.iter().map(|path| logs(path)).collect::<Result<Vec<_>, _>>()?.concat();
-        let given = paths.iter().map(|path| Loaded::read(path, &reading)?.given(&stated));
-        let given = given.collect::<Result<Vec<_>, _>>()?;
+        let mut given = Vec::new();
+        for path in records {
+            let start = given.len();
+            for log in logs(path)? {
+                given.push(Loaded::read(&log, &reading)?.given(&stated)?);
+            }
+            // A folder's note is one of its first record.
+            given
+                .get_mut(start)
+                .into_iter()
+                .for_each(|first: &mut Given| first.row.findings.extend(left_out(path)));
+        }
         Self::new(given, stated, nominal.display().to_string())
     }
 

@@ -1,7 +1,7 @@
 //! Writing of a table as text: a header of names, then one line per sample, separated by commas.
 
 use crate::FEWEST_SAMPLES;
-use crate::dialect::is_date;
+use crate::dates::is_date;
 use std::fmt::Write as _;
 
 /// Content of one cell.

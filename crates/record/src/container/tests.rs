@@ -1,6 +1,6 @@
 //! Files of every kind, built byte by byte.
 
-use super::text;
+use super::Unread;
 use crate::{ReadOptions, Record, read_text};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
@@ -13,6 +13,10 @@ const SAMPLES: usize = 40;
 fn swing(index: usize) -> (f64, f64) {
     let time = index as f64 / 64.0;
     (time, 0.5 * (-0.2 * time).exp() * (9.0 * time).cos())
+}
+
+fn text(bytes: &[u8]) -> Option<Result<String, Unread>> {
+    super::table(bytes).map(|read| read.map(|contained| contained.text))
 }
 
 fn table(bytes: &[u8]) -> String {

@@ -1,5 +1,6 @@
 //! `trainer init`: a first look at a log, and files to start from.
 
+mod looked;
 mod modes;
 
 use crate::commands::diagnose::arguments::Reading;
@@ -11,16 +12,17 @@ use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
 use experiment::envelope_by_default;
-use identify::{Estimated, LinearOscillator, Mode, identify, regular_part};
+use identify::{Estimated, regular_part};
+use looked::{Looked, is_significant, looked};
 use modes::uncertain;
-use record::{Fault, Look, ReadOptions, look};
+use record::Fault;
 use report::format::significant;
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
 use workflow::guess as files;
-use workflow::read::{bias, centered, coordinate_of};
-use workflow::{WorkflowError, in_options, logs};
+use workflow::read::{bias, coordinate_of};
+use workflow::{WorkflowError, in_options, left_out, logs};
 
 /// Inspects a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
 #[derive(Debug, Args)]
@@ -46,15 +48,6 @@ pub(crate) struct InitArguments {
     reading: Reading,
     #[command(flatten)]
     output: Output,
-}
-
-/// Log with its nearest linear oscillator.
-struct Looked {
-    path: PathBuf,
-    look: Look,
-    oscillator: LinearOscillator,
-    /// Modes of a free decay; the oscillator is the strongest if there are several.
-    modes: Vec<Mode>,
 }
 
 /// Findings in the logs, with the files and commands that follow from them.
@@ -91,14 +84,15 @@ pub(crate) fn command(arguments: &InitArguments) -> Result<Outcome, TrainerError
 }
 
 fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
-    let InitArguments { log, out, reading, .. } = arguments;
+    let InitArguments { log, out, .. } = arguments;
     let paths = logs(log)?;
     let folder = out.clone().unwrap_or_else(|| folder_of(log));
     RunFolder::check_free(&folder).map_err(|error| match error {
         RunError::Occupied { path } => TrainerError::InitOccupied { folder: path.display().to_string() },
         other => other.into(),
     })?;
-    let mut looked = paths.into_iter().map(|path| looked(&path, reading)).collect::<Result<Vec<_>, _>>()?;
+    let mut looked =
+        paths.into_iter().map(|path| looked(&path, &arguments.reading)).collect::<Result<Vec<_>, _>>()?;
     let each = if looked.len() > 1 { looked.iter().map(Looked::each).collect() } else { Vec::new() };
     let bias = looked.iter().any(|looked| bias(&looked.look.record).is_some());
     let by_error = |one: &Looked, other: &Looked| {
@@ -107,8 +101,9 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     looked.sort_by(by_error);
     // A folder without logs was refused above.
     let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
-    let surest = looked.into_iter().next().ok_or_else(none)?;
-    let Looked { path, look, oscillator, .. } = &surest;
+    let mut surest = looked.into_iter().next().ok_or_else(none)?;
+    surest.look.source.findings.extend(left_out(log));
+    let Looked { path, reading, look, oscillator, .. } = &surest;
     let coordinate = coordinate_of(look.source.reading.coordinate);
     let name = path.display().to_string();
     let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
@@ -129,7 +124,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let envelope = envelope_by_default(&look.record, &look.clock);
     if let Some(envelope) = envelope.ok().filter(|_| oscillator.input_gain.is_none()) {
         let path = path_from(&folder, path).display().to_string();
-        files.push(("estimate.toml", files::configuration(&path, &look.source.reading.options())));
+        files.push(("estimate.toml", files::configuration(&path, &options(&surest))));
         next.push((
             match envelope.because {
                 Some(_) => "the damping ratio from the samples",
@@ -139,6 +134,17 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         ));
     }
     Ok(Found { surest, each, coordinate, folder, files, next })
+}
+
+/// Returns the keys of a configuration that reads a log in the same way.
+fn options(looked: &Looked) -> Vec<(&'static str, String)> {
+    let mut options = looked.look.source.reading.options();
+    let Reading { clock, input, .. } = &looked.reading;
+    options.extend((*clock != Reading::default().clock).then(|| ("clock", clock.clone())));
+    // A column that is left out on purpose would be found again.
+    options
+        .extend(input.clone().filter(|_| looked.look.record.input().is_none()).map(|none| ("input", none)));
+    options
 }
 
 /// Returns `true` if a diagnosis can take a record: it is driven, or has a spring and enough cycles.
@@ -158,56 +164,7 @@ fn folder_of(log: &Path) -> PathBuf {
     PathBuf::from(format!("{name}-nominal"))
 }
 
-/// Inspects one log.
-fn looked(path: &Path, reading: &Reading) -> Result<Looked, TrainerError> {
-    // A command or a voltage in the file may drive the system; it counts as an input if the motion follows
-    // it.
-    let found = looked_as(path, reading, true);
-    let follows = match &found {
-        Ok(found) => found.oscillator.input_gain.is_none_or(is_significant),
-        // A constant input cannot be distinguished from a rest position.
-        Err(TrainerError::Workflow(WorkflowError::Identify { .. })) => false,
-        Err(_) => true,
-    };
-    if follows || reading.input.is_some() { found } else { looked_as(path, reading, false) }
-}
-
-fn is_significant(estimated: Estimated) -> bool {
-    estimated.value.abs() > SIGNIFICANT * estimated.std_error
-}
-
-/// Number of standard errors above zero from which a number counts as different from zero.
-const SIGNIFICANT: f64 = 3.0;
-
-fn looked_as(path: &Path, reading: &Reading, driven: bool) -> Result<Looked, TrainerError> {
-    let options = ReadOptions { driven, ..reading.plain().options };
-    let mut look = look(path, &options).map_err(WorkflowError::Record)?;
-    let file = path.display().to_string();
-    if reading.remove_mean {
-        look.record = centered(&look.record).map_err(|fault| WorkflowError::Record(fault.in_file(&file)))?;
-    }
-    let oscillator =
-        identify(&look.record, &look.clock).map_err(|source| WorkflowError::Identify { file, source })?;
-    let modes = identify::modes(&look.record, &look.clock);
-    let oscillator = match modes.as_slice() {
-        [strongest, _, ..] => strongest.oscillator(oscillator, modes.len()),
-        _ => oscillator,
-    };
-    Ok(Looked { path: path.to_owned(), look, oscillator, modes })
-}
-
 impl Looked {
-    fn duration_s(&self) -> f64 {
-        let times = &self.look.clock.times_s;
-        // A record without samples has a duration of zero.
-        times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
-    }
-
-    /// Returns the number of cycles in the record; `None` without a natural frequency.
-    fn cycles(&self) -> Option<f64> {
-        Some(self.oscillator.natural_frequency_hz()?.value * self.duration_s())
-    }
-
     fn each(&self) -> EachLog {
         EachLog {
             path: self.path.display().to_string(),
