@@ -65,6 +65,7 @@ pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
 #[must_use]
 pub fn left_out(path: &Path) -> Option<String> {
     let tables = of(&entries(path).ok()?, TABLES);
+    // A file in a folder has a name.
     let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let (raw, others): (Vec<&PathBuf>, Vec<&PathBuf>) = tables.iter().partition(|path| is_raw(path));
     let [raw, others] = [raw, others].map(|files| files.into_iter().map(name).collect::<Vec<_>>().join(", "));

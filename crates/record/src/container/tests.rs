@@ -356,6 +356,8 @@ fn damaged_files_of_every_kind_never_panic() {
         wav(3, 8, &[7; 64]),
         lvm("Multi", &segment("12:00:00", "1")),
         lvm("No", &[segment("12:00:00", "1"), segment("12:00:09", "2")].concat()),
+        "MIN=0\t-5\nDEF=\"t\" t / s\tU_A1 / V\n0,0\t1,0\n".repeat(2).into_bytes(),
+        "10:12:31.010 -> angle:4.15 target: -1\n".repeat(9).into_bytes(),
         json.clone().into_bytes(),
         json.replace("}, {", "}\n{").into_bytes(),
         format!("{{\"n\": 1, \"data\": {json}}}").into_bytes(),
