@@ -9,16 +9,39 @@ use crate::{Basis, Estimated, LinearOscillator};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use record::{Clock, Record, noise_level};
 
-/// Numbers that are fitted: stiffness, damping, input gain, shift, first position and first velocity.
+/// Number of the fitted numbers.
 const COUNT: usize = 6;
-/// The fitted numbers, or their derivatives.
-type Numbers = SVector<f64, COUNT>;
-/// Places of the numbers; the first position and velocity begin at the last.
-const STIFFNESS: usize = 0;
-const DAMPING: usize = 1;
+/// Place of the input's gain among them.
 const GAIN: usize = 2;
-const SHIFT: usize = 3;
-const START: usize = 4;
+
+/// Position and velocity, or their derivatives.
+type Pair = [f64; 2];
+
+/// The fitted numbers.
+#[derive(Debug, Clone, Copy)]
+struct Numbers {
+    stiffness: f64,
+    damping: f64,
+    gain: f64,
+    /// Acceleration at rest, or what a sensor of a velocity or an acceleration shows then.
+    shift: f64,
+    start: Pair,
+}
+
+impl Numbers {
+    fn moved(self, step: &[f64; COUNT]) -> Self {
+        let [stiffness, damping, gain, shift, position, velocity] = *step;
+        let [x, v] = self.start;
+        Self {
+            stiffness: self.stiffness + stiffness,
+            damping: self.damping + damping,
+            gain: self.gain + gain,
+            shift: self.shift + shift,
+            start: [x + position, v + velocity],
+        }
+    }
+}
+
 /// Most steps of the fit.
 const STEPS: usize = 40;
 /// Relative gain of a step that ends the fit.
@@ -115,7 +138,7 @@ struct Problem {
 /// Sums of a simulation over the samples.
 struct Sums {
     normal: SMatrix<f64, COUNT, COUNT>,
-    slope: Numbers,
+    slope: SVector<f64, COUNT>,
     /// Sum of the squared residuals.
     rest: f64,
     /// Sum of the products of neighboring residuals.
@@ -123,7 +146,24 @@ struct Sums {
 }
 
 /// Position and velocity, and their derivatives with respect to each of the numbers.
-type State = SMatrix<f64, 2, { COUNT + 1 }>;
+#[derive(Debug, Clone, Copy)]
+struct State {
+    own: Pair,
+    by: [Pair; COUNT],
+}
+
+impl State {
+    /// Returns the state after a step at given rates.
+    fn plus(mut self, step: f64, rates: &Self) -> Self {
+        let pairs = std::iter::once(&mut self.own).chain(&mut self.by);
+        for (own, rate) in pairs.zip(std::iter::once(&rates.own).chain(&rates.by)) {
+            for (value, rate) in own.iter_mut().zip(rate) {
+                *value += step * rate;
+            }
+        }
+        self
+    }
+}
 
 impl Problem {
     fn new(record: &Record, clock: &Clock, pushes: &[(f64, f64)], kept: bool) -> Self {
@@ -137,11 +177,9 @@ impl Problem {
         let mut rest = samples.iter().peekable();
         let mut knots: Vec<Knot> = Vec::with_capacity(at.len());
         for (index, &(time, push)) in at.iter().enumerate() {
+            let next = at.get(index + 1).filter(|next| !kept && next.0 > time);
             // The last input has no next one, and stays.
-            let rate = at
-                .get(index + 1)
-                .filter(|next| !kept && next.0 > time)
-                .map_or(0.0, |next| (next.1 - push) / (next.0 - time));
+            let rate = next.map_or(0.0, |next| (next.1 - push) / (next.0 - time));
             let value = rest.next_if(|sample| sample.0 <= time).map(|sample| sample.1);
             knots.push(Knot { time, push, rate, value });
         }
@@ -153,7 +191,7 @@ impl Problem {
         let (mut numbers, mut sums) = self.best_of(start)?;
         let mut lambda = 1e-6;
         for _ in 0..STEPS {
-            let next = self.step(&sums, lambda).map(|step| numbers + step);
+            let next = self.step(&sums, lambda).map(|step| numbers.moved(&step));
             match next.and_then(|next| Some((next, self.sums(&next)?))) {
                 Some((next, found)) if found.rest < sums.rest => {
                     let gain = 1.0 - found.rest / sums.rest;
@@ -172,9 +210,8 @@ impl Problem {
     /// Returns the best numbers for a stiffness and a damping: the motion is linear in the others, and a system at rest
     /// tells nothing of the two.
     fn best_of(&self, [stiffness, damping]: [f64; 2]) -> Option<(Numbers, Sums)> {
-        let mut numbers = Numbers::zeros();
-        (numbers[STIFFNESS], numbers[DAMPING]) = (stiffness, damping);
-        let numbers = numbers + self.step(&self.sums(&numbers)?, 0.0)?;
+        let at_rest = Numbers { stiffness, damping, gain: 0.0, shift: 0.0, start: [0.0; 2] };
+        let numbers = at_rest.moved(&self.step(&self.sums(&at_rest)?, 0.0)?);
         Some((numbers, self.sums(&numbers)?))
     }
 
@@ -184,7 +221,7 @@ impl Problem {
     }
 
     /// Returns the step of the method of Levenberg and Marquardt in all numbers that the motion depends on.
-    fn step(&self, sums: &Sums, lambda: f64) -> Option<Numbers> {
+    fn step(&self, sums: &Sums, lambda: f64) -> Option<[f64; COUNT]> {
         let mut free = self.free();
         free.retain(|at| sums.normal.get((*at, *at)).is_some_and(|size| *size > 0.0));
         let mut normal = self.normal(sums, &free)?;
@@ -196,7 +233,7 @@ impl Problem {
         let scale = normal.diagonal().map(f64::sqrt);
         let scaled = normal.component_div(&(&scale * scale.transpose()));
         let solution = scaled.cholesky()?.solve(&slope.component_div(&scale)).component_div(&scale);
-        let mut step = Numbers::zeros();
+        let mut step = [0.0; COUNT];
         for (at, value) in free.iter().zip(solution.iter()) {
             *step.get_mut(*at)? = *value;
         }
@@ -220,31 +257,29 @@ impl Problem {
         // Residuals of which neighbors are alike tell less: those of a first-order autoregression.
         let alike = (sums.next / sums.rest).clamp(0.0, 0.999);
         let variance = sums.rest / freedom * (1.0 + alike) / (1.0 - alike);
-        let estimated = |number: usize| {
+        let std_error = |number: usize| {
             let at = free.iter().position(|free| *free == number)?;
-            let std_error = (variance * inverse.get((at, at))?).sqrt();
-            Some(Estimated { value: *numbers.get(number)?, std_error })
+            Some((variance * inverse.get((at, at))?).sqrt())
         };
-        let (stiffness, damping) = (estimated(STIFFNESS)?, estimated(DAMPING)?);
+        let estimated = |value: f64, number: usize| Some(Estimated { value, std_error: std_error(number)? });
+        let (stiffness, damping) = (estimated(numbers.stiffness, 0)?, estimated(numbers.damping, 1)?);
+        let shift = estimated(numbers.shift, 3).filter(|_| self.order == 0);
         let usable = stiffness.value.is_finite() && stiffness.value > 0.0 && damping.std_error.is_finite();
         usable.then_some(LinearOscillator {
             stiffness,
             damping,
-            rest: estimated(SHIFT)
-                .filter(|_| self.order == 0)
-                .map(|shift| shift.times(1.0 / stiffness.value)),
-            input_gain: estimated(GAIN),
+            rest: shift.map(|shift| shift.times(1.0 / stiffness.value)),
+            input_gain: estimated(numbers.gain, GAIN),
             basis: Basis::Response(self.samples),
         })
     }
 
     /// Simulates the record; `None` if the motion runs away.
     fn sums(&self, numbers: &Numbers) -> Option<Sums> {
-        let fastest = numbers[STIFFNESS].abs().sqrt().max(numbers[DAMPING].abs());
-        let mut sums = Sums { normal: SMatrix::zeros(), slope: Numbers::zeros(), rest: 0.0, next: 0.0 };
-        let mut state = State::zeros();
-        (state[(0, 0)], state[(1, 0)]) = (numbers[START], numbers[START + 1]);
-        (state[(0, START + 1)], state[(1, START + 2)]) = (1.0, 1.0);
+        let fastest = numbers.stiffness.abs().sqrt().max(numbers.damping.abs());
+        let mut sums = Sums { normal: SMatrix::zeros(), slope: SVector::zeros(), rest: 0.0, next: 0.0 };
+        let none = [0.0; 2];
+        let mut state = State { own: numbers.start, by: [none, none, none, none, [1.0, 0.0], [0.0, 1.0]] };
         let mut before: Option<f64> = None;
         for (knot, next) in self.knots.iter().zip(self.knots.iter().skip(1).map(Some).chain([None])) {
             if let Some(value) = knot.value {
@@ -269,46 +304,55 @@ impl Problem {
     }
 
     /// Returns what the sensor sees, and its derivatives with respect to the numbers.
-    fn seen(&self, numbers: &Numbers, state: &State, push: f64) -> (f64, Numbers) {
+    fn seen(&self, numbers: &Numbers, state: &State, push: f64) -> (f64, SVector<f64, COUNT>) {
         let rates = self.rates(numbers, state, push);
-        let seen = match self.order {
-            0 => state.row(0).into_owned(),
-            1 => state.row(1).into_owned(),
-            _ => rates.row(1).into_owned(),
+        let of = |[position, velocity]: Pair, [_, acceleration]: Pair| match self.order {
+            0 => position,
+            1 => velocity,
+            _ => acceleration,
         };
-        let mut row = Numbers::from_iterator(seen.iter().skip(1).copied());
-        // A sensor of the velocity or of the acceleration sees no rest position, but has one of its own.
-        let own = if self.order == 0 { 0.0 } else { numbers[SHIFT] };
-        if self.order > 0 {
-            row[SHIFT] = 1.0;
+        let by = state.by.iter().zip(&rates.by).map(|(own, rate)| of(*own, *rate));
+        let mut row = SVector::from_iterator(by);
+        let seen = of(state.own, rates.own);
+        if self.order == 0 {
+            return (seen, row);
         }
-        (seen[0] + own, row)
+        // A sensor of the velocity or of the acceleration sees no rest position, but has one of its own.
+        if let Some(by_shift) = row.get_mut(3) {
+            *by_shift = 1.0;
+        }
+        (seen + numbers.shift, row)
     }
 
     /// Returns the derivatives of the state by time.
     fn rates(&self, numbers: &Numbers, state: &State, push: f64) -> State {
-        let (stiffness, damping) = (numbers[STIFFNESS], numbers[DAMPING]);
-        let mut rates = State::zeros();
-        for (mut rate, own) in rates.column_iter_mut().zip(state.column_iter()) {
-            (rate[0], rate[1]) = (own[1], -damping * own[1] - stiffness * own[0]);
+        let Numbers { stiffness, damping, gain, shift, .. } = *numbers;
+        let rate = |[x, v]: Pair, pushed: f64| [v, pushed - damping * v - stiffness * x];
+        let acts = if self.order == 0 { 1.0 } else { 0.0 };
+        let ([x, v], [by_stiffness, by_damping, by_gain, by_shift, by_position, by_velocity]) =
+            (state.own, state.by);
+        State {
+            own: rate(state.own, gain * push + acts * shift),
+            by: [
+                rate(by_stiffness, -x),
+                rate(by_damping, -v),
+                rate(by_gain, push),
+                rate(by_shift, acts),
+                rate(by_position, 0.0),
+                rate(by_velocity, 0.0),
+            ],
         }
-        let shift = if self.order == 0 { 1.0 } else { 0.0 };
-        rates[(1, 0)] += numbers[GAIN] * push + shift * numbers[SHIFT];
-        rates[(1, 1 + STIFFNESS)] -= state[(0, 0)];
-        rates[(1, 1 + DAMPING)] -= state[(1, 0)];
-        rates[(1, 1 + GAIN)] += push;
-        rates[(1, 1 + SHIFT)] += shift;
-        rates
     }
 
     /// Takes a step by the classical method of Runge and Kutta.
     fn advanced(&self, numbers: &Numbers, state: &State, push: f64, rate: f64, step: f64) -> State {
-        let one = self.rates(numbers, state, push);
         let middle = push + 0.5 * rate * step;
-        let two = self.rates(numbers, &(state + 0.5 * step * one), middle);
-        let three = self.rates(numbers, &(state + 0.5 * step * two), middle);
-        let four = self.rates(numbers, &(state + step * three), push + rate * step);
-        state + step / 6.0 * (one + 2.0 * two + 2.0 * three + four)
+        let one = self.rates(numbers, state, push);
+        let two = self.rates(numbers, &state.plus(0.5 * step, &one), middle);
+        let three = self.rates(numbers, &state.plus(0.5 * step, &two), middle);
+        let four = self.rates(numbers, &state.plus(step, &three), push + rate * step);
+        let weights = [(&one, 1.0), (&two, 2.0), (&three, 2.0), (&four, 1.0)];
+        weights.iter().fold(*state, |state, (rates, weight)| state.plus(step / 6.0 * weight, rates))
     }
 }
 
