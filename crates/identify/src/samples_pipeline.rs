@@ -54,6 +54,10 @@ const LONGEST: f64 = 0.15;
 const MOST_OF_A_MODE: f64 = 0.2;
 /// Smallest amplitude in largest ones: no sensor's range is wider, and the rounds end at errors of this size.
 const DYNAMIC_RANGE: f64 = 1e-6;
+/// Residuals, in steps of rounded values, from which the errors of rounding are random, and the smallest amplitude
+/// where they are not, in steps.
+const DITHERED: f64 = 0.45;
+const COARSE: f64 = 2.3;
 /// Residuals of a window, in those of the others and as a part of its amplitude, above which it holds more than a
 /// free swing.
 const FOREIGN: (f64, f64) = (4.0, 0.15);
@@ -66,6 +70,8 @@ struct Swing {
     /// Decay rate of the amplitude, in 1/s.
     decay: f64,
     values: Vec<f64>,
+    /// Step that the values are rounded to; 0 if they are not.
+    quantum: f64,
 }
 
 /// Damped sinusoid fitted to the samples of a window.
@@ -198,7 +204,7 @@ impl SamplesPipeline {
         let (windows, offset) = swing.windows(&clock.times_s, length_s);
         // Without windows there is no decay, whatever the noise.
         let noise = median(windows.iter().map(Window::scatter).collect()).unwrap_or(0.0);
-        let windows = self.free_decay(&windows, noise);
+        let windows = self.free_decay(&windows, noise, swing.quantum);
         if windows.len() < FEWEST_WINDOWS {
             return Err(EnvelopeError::TooFewPeaks {
                 pipeline: "samples",
@@ -215,7 +221,7 @@ impl SamplesPipeline {
     }
 
     /// Returns the windows from the largest amplitude on, up to the first two that the noise hides.
-    fn free_decay(&self, windows: &[Window], noise: f64) -> Vec<Window> {
+    fn free_decay(&self, windows: &[Window], noise: f64, quantum: f64) -> Vec<Window> {
         let (of_noise, of_amplitude) = FOREIGN;
         let own =
             |window: &&Window| window.scatter() <= (of_noise * noise).max(of_amplitude * window.amplitude());
@@ -227,8 +233,10 @@ impl SamplesPipeline {
         let start = largest.map_or(own.len(), |(at, _)| at);
         let top = own.get(start).map_or(f64::NAN, Window::amplitude);
         let is_clear = |window: &Window| {
-            let noise = self.floor_in_errors * noise * window.leverage.sqrt();
-            window.amplitude() > noise.max(DYNAMIC_RANGE * top)
+            let hidden = self.floor_in_errors * noise * window.leverage.sqrt();
+            // Noise below the step does not make an error of the rounding random.
+            let rounded = if noise < DITHERED * quantum { COARSE * quantum } else { 0.0 };
+            window.amplitude() > hidden.max(rounded).max(DYNAMIC_RANGE * top)
         };
         let Some(decay) = own.get(start..) else { return Vec::new() };
         let hidden = decay.windows(2).position(|pair| !pair.iter().any(is_clear));
@@ -248,6 +256,8 @@ impl Swing {
     /// Takes the nearest linear oscillator, or the strongest mode of a record that swings for long enough to show
     /// modes.
     fn guessed(record: &Record, clock: &Clock) -> Result<Self, EnvelopeError> {
+        // Values without a lattice are not rounded.
+        let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
         let nearest = weak::oscillator(record, clock).map(|found| {
             let decay = found.damping.times(0.5);
             ((found.stiffness.value - decay.value * decay.value).max(0.0).sqrt(), decay)
@@ -260,7 +270,7 @@ impl Swing {
         });
         let mode = if is_strong { None } else { separated(record, clock) };
         if let Some(Separated { omega, decay, values }) = mode {
-            return Ok(Self { omega, decay, values });
+            return Ok(Self { omega, decay, values, quantum });
         }
         let (omega, decay) = nearest.map_err(|error| EnvelopeError::TooFewPeaks {
             pipeline: "samples",
@@ -268,15 +278,13 @@ impl Swing {
             needed: FEWEST_WINDOWS,
             remedy: error.to_string(),
         })?;
-        Self::underdamped(omega, decay.value, record.values().to_vec())
+        Self { omega, decay: decay.value, values: record.values().to_vec(), quantum }.checked()
     }
 
-    fn underdamped(omega: f64, decay: f64, values: Vec<f64>) -> Result<Self, EnvelopeError> {
-        if omega > LEAST_SWING * decay.abs() && omega.is_finite() && decay.is_finite() {
-            Ok(Self { omega, decay, values })
-        } else {
-            Err(EnvelopeError::NoSwing)
-        }
+    /// Refuses a motion that hardly swings.
+    fn checked(self) -> Result<Self, EnvelopeError> {
+        let swings = self.omega > LEAST_SWING * self.decay.abs() && self.omega.is_finite();
+        if swings && self.decay.is_finite() { Ok(self) } else { Err(EnvelopeError::NoSwing) }
     }
 
     fn duration_s(&self, clock: &Clock) -> f64 {
@@ -287,7 +295,7 @@ impl Swing {
     /// Corrects the frequency by the drift of the windows' phases, and the decay by that of their amplitudes.
     fn corrected(self, found: &Found) -> Result<Self, EnvelopeError> {
         let [omega, decay] = self.drifts(&found.windows, found.noise);
-        Self::underdamped(self.omega - omega.value, decay.value, self.values)
+        Self { omega: self.omega - omega.value, decay: decay.value, ..self }.checked()
     }
 
     /// Returns windows whose phases are those of the swing's own phase at the same time.

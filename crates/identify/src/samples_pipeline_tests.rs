@@ -87,3 +87,15 @@ fn a_faint_swing_is_found_without_bias() {
         .collect();
     assert!(pulls.iter().flatten().filter(|pull| pull.abs() > 3.0).count() <= 1, "{pulls:?}");
 }
+
+/// Of a swing of a few steps, only what is large beside a step is believed.
+#[test]
+fn coarse_rounding_is_no_noise() {
+    let fine = record(100.0, 100.0, 0.01, 4, |time| 5.0 * decay(0.004)(time));
+    let record = fine.mapped(f64::round, |input| input).unwrap();
+    let [frequency, ratio, error] = found(&record).unwrap();
+    assert!(
+        (frequency - 1.0).abs() < 1e-3 && (ratio - 0.004).abs() < 4.0 * error,
+        "{frequency} {ratio} {error}"
+    );
+}
