@@ -132,6 +132,8 @@ fn samples_serve_where_peaks_do_not() {
         let result: Value = serde_json::from_slice(&run(&[]).stdout).unwrap();
         assert_eq!(result["envelope"]["pipeline"], "samples", "{name}");
         assert!(result["envelope"]["pipeline_because"].to_string().contains(because), "{name}: {result}");
+        let modes = result["modes"].as_array().map_or(1, Vec::len);
+        assert_eq!(modes, if because.contains("2 modes") { 2 } else { 1 }, "{name}");
         let found = number(&result, "/estimate/zeta");
         assert!((found / zeta - 1.0).abs() < part, "{name}: {found}");
         let peaks = run(&["envelope.pipeline=recommended"]);
@@ -149,6 +151,8 @@ fn a_lift_by_hand_is_left_out_and_said() {
     let part = &found["record"]["reading"]["part_s"];
     let from = part[0].as_f64().unwrap();
     assert!((from - 4.8).abs() < 0.05, "{part}");
+    let outline = found["record"]["reading"]["whole"]["outline"].as_array().unwrap();
+    assert!(outline.len() > 400 && outline[0][0].as_f64().unwrap() < 0.1, "{}", outline.len());
     assert!(found["record"]["findings"].to_string().contains("swings freely from 4.8"), "{found}");
     let whole = look(&path, &["--from", "0"]).unwrap();
     assert_eq!(whole["record"]["samples"], 3398);
@@ -181,4 +185,33 @@ fn two_modes_are_both_shown() {
     assert_eq!(number(&found, "/oscillator/natural_frequency_hz/value"), of(0, "frequency_hz"));
     let one = look(&field("tracker-xy/tracker.txt").unwrap(), &[]).unwrap();
     assert!(one["modes"].as_array().unwrap().is_empty());
+}
+
+/// Regression: without a gain in the nominal simulator, the command of a driven joint was left out in silence.
+#[test]
+fn a_gain_that_is_not_stated_is_taken_from_the_record() {
+    let Some(path) = field("well-damped-driven-joint/right-nominal-zeta052.csv") else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let nominal = scratch.path().join("nominal.toml");
+    std::fs::write(&nominal, "inertia = 1.0\ndamping = 14.0\nstiffness = 180.0\nrest_angle = 0.0\n").unwrap();
+    let diagnose = |more: &[&str]| {
+        let out = scratch.path().join(format!("out{}", more.len()));
+        let [record, nominal, out] = [&path, &nominal, &out].map(|path| path.to_str().unwrap());
+        let mut arguments = vec!["diagnose", record, "--nominal", nominal, "--json", "--out", out];
+        arguments.extend(more);
+        serde_json::from_slice::<Value>(&trainer(&arguments).stdout).unwrap()
+    };
+    let found = diagnose(&[]);
+    assert!(
+        number(&found, "/gap/recalibrated") < 1.2 * number(&found, "/gap/noise_floor"),
+        "{}",
+        found["gap"]
+    );
+    assert!(
+        found["records"][0]["findings"].to_string().contains("states no input_gain"),
+        "{}",
+        found["records"]
+    );
+    let alone = diagnose(&["--input", "none"]);
+    assert!(number(&alone, "/gap/nominal") > 100.0 * number(&alone, "/gap/noise_floor"), "{}", alone["gap"]);
 }

@@ -7,7 +7,8 @@
 //! one without changes.
 
 use dynamics::{
-    Active, Coefficients, Coordinate, Effect, KnownEffect, Nominal, NominalSimulator, REGISTRY, Units,
+    Active, Coefficients, Coordinate, DynamicsError, Effect, KnownEffect, Nominal, NominalSimulator,
+    REGISTRY, Units,
 };
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
@@ -22,6 +23,19 @@ pub struct StatedNominal {
     pub simulator: NominalSimulator,
     /// `true` if the file mentions an input; the records must then have one.
     pub driven: bool,
+}
+
+impl StatedNominal {
+    /// Returns the simulator driven by an input with a gain, in the unit of torque (force) per unit of the input.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] for a gain that is not finite.
+    pub fn driven_by(self, input_gain: f64) -> Result<Self, DynamicsError> {
+        let coefficients = Coefficients { input_gain, ..self.nominal.coefficients() };
+        let nominal = self.nominal.with_coefficients(coefficients)?;
+        let simulator = NominalSimulator::new(nominal, self.simulator.effects().to_vec())?;
+        Ok(Self { nominal, simulator, driven: true })
+    }
 }
 
 #[derive(Deserialize)]

@@ -112,7 +112,7 @@ fn unsuited(peaks: &Result<Extraction, EnvelopeError>, record: &Record, clock: &
     let modes = identify::modes(record, clock);
     if let Some(second) = modes.get(1).filter(|mode| mode.share > SECOND_MODE) {
         return Some(format!(
-            "the record holds {} modes, the second of {:.3} Hz with {:.0} % of the power; they are taken away before",
+            "the record holds {} modes, the second of {:.3} Hz with {:.0} % of the power; all but the strongest are subtracted first",
             modes.len(),
             second.frequency_hz.value,
             100.0 * second.share

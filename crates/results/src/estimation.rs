@@ -175,6 +175,12 @@ pub struct EnvelopeSummary {
 }
 
 impl EnvelopeSummary {
+    /// Returns the name of what [`Self::peaks`] counts.
+    #[must_use]
+    pub fn counted(&self) -> &'static str {
+        if self.pipeline == "samples" { "windows" } else { "peaks" }
+    }
+
     /// Returns the name of the pipeline, with the reason if the record decided it.
     #[must_use]
     pub fn pipeline_in_words(&self) -> String {

@@ -33,6 +33,35 @@ pub struct Answer {
     pub result: DiagnosisResult,
 }
 
+/// Number of standard errors of a gain from which an input drives the system, though the nominal simulator states none.
+const DRIVES: f64 = 10.0;
+
+/// Returns the gain of an input that a simulator does not state and a record follows, with a sentence; `None` if the
+/// reading names an input or none, or if the record follows none.
+fn gain_of(record: &Path, stated: &StatedNominal, reading: &Reading) -> Option<(f64, String)> {
+    if reading.options.columns.input.is_some() {
+        return None;
+    }
+    let log = logs(record).ok()?.into_iter().next()?;
+    let mut reading = reading.clone().for_nominal(stated);
+    reading.options.driven = true;
+    let loaded = Loaded::read(&log, &reading).ok()?;
+    loaded.record.input()?;
+    let oscillator = identify::identify(&loaded.record, &loaded.believed().ok()?).ok()?;
+    let gain = oscillator.input_gain.filter(|gain| gain.value.abs() > DRIVES * gain.std_error)?;
+    let gain = gain.value * stated.nominal.inertia();
+    let column = loaded.source.reading.input.map(|input| input.column)?;
+    let told = format!("{gain:.4e}").parse::<f64>().unwrap_or(gain);
+    Some((
+        gain,
+        format!(
+            "the nominal simulator states no input_gain, but `{column}` drives the record: it was taken as the input, \
+             with a gain of {told} from the record, which is fitted too; state input_gain, or leave the input out with \
+             --input none"
+        ),
+    ))
+}
+
 impl Question {
     /// Combines records and a nominal simulator.
     ///
@@ -55,6 +84,17 @@ impl Question {
     /// [`WorkflowError`] with the file, the place in it and the option to set.
     pub fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, WorkflowError> {
         let stated = nominal::read(nominal)?;
+        let gain = match records.first() {
+            Some(first) if !stated.driven => gain_of(first, &stated, reading),
+            _ => None,
+        };
+        let stated = match &gain {
+            Some((gain, _)) => stated.driven_by(*gain).map_err(|error| WorkflowError::Nominal {
+                file: nominal.display().to_string(),
+                problem: error.to_string(),
+            })?,
+            None => stated,
+        };
         let reading = reading.clone().for_nominal(&stated);
         let mut given = Vec::new();
         for path in records {
@@ -67,6 +107,9 @@ impl Question {
                 .get_mut(start)
                 .into_iter()
                 .for_each(|first: &mut Given| first.row.findings.extend(left_out(path)));
+        }
+        if let (Some(first), Some((_, finding))) = (given.first_mut(), gain) {
+            first.row.findings.push(finding);
         }
         Self::new(given, stated, nominal.display().to_string())
     }

@@ -94,8 +94,11 @@ fn fits(experiment: &Experiment) -> Result<Vec<Line>, TrainerError> {
         line(
             "envelope",
             format!(
-                "{} peaks by the {} pipeline, ω = {:.6} rad/s",
-                envelope.peaks, envelope.pipeline, envelope.omega_rad_s
+                "{} {} by the {} pipeline, ω = {:.6} rad/s",
+                envelope.peaks,
+                envelope.counted(),
+                envelope.pipeline,
+                envelope.omega_rad_s
             ),
         ),
     ];

@@ -11,8 +11,8 @@ pub(super) fn uncertain(estimated: Estimated) -> String {
 pub(super) fn remark(modes: &[Mode]) -> Option<String> {
     (modes.len() > 1).then(|| {
         format!(
-            "the record holds {} modes; the numbers above are those of the strongest, and so is an estimate: the others are \
-             taken away before",
+            "the record holds {} modes; the numbers above are those of the strongest, and so are those of an estimate, \
+             before which the others are subtracted",
             modes.len()
         )
     })

@@ -81,7 +81,7 @@ fn numbers(result: &EstimationResult) -> String {
     let rate_error = error * estimate.decay_rate / estimate.zeta;
     let mut rows = vec![
         row("pipeline", result.envelope.pipeline_in_words()),
-        row("peaks", result.envelope.peaks.to_string()),
+        row(result.envelope.counted(), result.envelope.peaks.to_string()),
         row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),
         row("decay rate λ", format!("{} 1/s", format::with_uncertainty(estimate.decay_rate, rate_error))),
         row("damping ratio ζ", ratio(estimate.zeta, error)),
@@ -179,7 +179,7 @@ fn oscillation(result: &ComparisonResult) -> String {
     };
     let mut rows = vec![
         row("pipeline", result.envelope.pipeline_in_words()),
-        row("peaks", result.envelope.peaks.to_string()),
+        row(result.envelope.counted(), result.envelope.peaks.to_string()),
         row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
         row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),
         row("decay rate λ", format!("{} 1/s", format::with_uncertainty(oracle.decay_rate, oracle.std_error))),
