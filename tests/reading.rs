@@ -206,3 +206,28 @@ fn what_the_reader_found_reads_the_file_again() {
     assert_eq!(one["oracle"], other["oracle"]);
     assert!(root().join("configs/ols.toml").exists());
 }
+
+/// A body that is struck again swings freely twice: each swing is a record of its own.
+#[test]
+fn two_strikes_are_two_records() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = |name: &str| scratch.path().join(name).to_str().unwrap().to_owned();
+    let swing = |time: f64| (-0.2 * time).exp() * (12.0 * time).cos();
+    let value = |time: f64| if time < 9.0 { 0.3 * swing(time) } else { 0.4 * swing(time - 9.0) };
+    let noise =
+        |at: u32| 1e-3 * (f64::from(at) * 43.758).sin() * (f64::from(at) * f64::from(at) * 0.713).cos();
+    let rows =
+        (0..1800).map(|at| format!("{},{}\n", 0.01 * f64::from(at), value(0.01 * f64::from(at)) + noise(at)));
+    std::fs::write(path("log.csv"), format!("time_s,angle_rad\n{}", rows.collect::<String>())).unwrap();
+    let nominal = "inertia = 1.0\ndamping = 0.4\nstiffness = 144.04\nrest_angle = 0.0\n";
+    std::fs::write(path("nominal.toml"), nominal).unwrap();
+    let out = path("out");
+    let output =
+        trainer(&["diagnose", &path("log.csv"), "--nominal", &path("nominal.toml"), "--json", "--out", &out]);
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let records = found["records"].as_array().unwrap();
+    assert_eq!(records.len(), 2, "{}", found["records"]);
+    let part = |at: usize| &records[at]["reading"]["part_s"];
+    assert_ne!(part(0), part(1));
+    assert!(found["gap"]["ratio_to_floor"].as_f64().unwrap() < 1.3, "{}", found["gap"]);
+}

@@ -10,6 +10,7 @@ use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
 use experiment::StatedNominal;
 use export::Repaired;
 use results::DiagnosisResult;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -31,6 +32,18 @@ pub struct Answer {
     pub repaired: Repaired,
     /// Content of `diagnosis.json`.
     pub result: DiagnosisResult,
+}
+
+/// Cycles of the nominal simulator from which another free swing of a file is a record of its own.
+const CYCLES: f64 = 6.0;
+
+/// Returns the stamps, in seconds, of the other long free swings of a file.
+fn other_swings(loaded: &Loaded, stated: &StatedNominal) -> Vec<[f64; 2]> {
+    let reading = &loaded.source.reading;
+    let (Some(whole), Some(read)) = (&reading.whole, reading.part_s) else { return Vec::new() };
+    let least = CYCLES * TAU / stated.simulator.angular_frequency();
+    let is_other = |[from, to]: &&[f64; 2]| [*from, *to] != read && to - from > least;
+    whole.free_s.iter().filter(is_other).copied().collect()
 }
 
 /// Number of standard errors of a gain from which an input drives the system, though the nominal simulator states none.
@@ -70,7 +83,8 @@ impl Question {
     /// agree.
     pub fn new(given: Vec<Given>, stated: StatedNominal, nominal: String) -> Result<Self, WorkflowError> {
         for (at, one) in given.iter().enumerate() {
-            if let Some(again) = given.iter().skip(at + 1).find(|other| other.row.digest == one.row.digest) {
+            let part = |given: &Given| (given.row.digest.clone(), given.row.reading.part_s);
+            if let Some(again) = given.iter().skip(at + 1).find(|other| part(other) == part(one)) {
                 let [first, second] = [one, again].map(|given| given.row.path.clone());
                 return Err(WorkflowError::SameRecord { first, second, digest: one.row.digest.clone() });
             }
@@ -100,7 +114,14 @@ impl Question {
         for path in records {
             let start = given.len();
             for log in logs(path)? {
-                given.push(Loaded::read(&log, &reading)?.given(&stated)?);
+                let loaded = Loaded::read(&log, &reading)?;
+                let others = other_swings(&loaded, &stated);
+                given.push(loaded.given(&stated)?);
+                for [from_s, to_s] in others {
+                    let mut reading = reading.clone();
+                    (reading.options.from_s, reading.options.to_s) = (Some(from_s), Some(to_s));
+                    given.push(Loaded::read(&log, &reading)?.given(&stated)?);
+                }
             }
             // A folder's note is one of its first record.
             given
