@@ -75,6 +75,12 @@ impl Envelope {
         Self { ratio, ..self }
     }
 
+    /// Returns the definition of the damping ratio.
+    #[must_use]
+    pub fn ratio(&self) -> RatioDefinition {
+        self.ratio
+    }
+
     /// Returns the number of peaks.
     #[must_use]
     pub fn len(&self) -> usize {

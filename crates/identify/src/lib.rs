@@ -41,13 +41,19 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
     }
     let free = input(record, clock).is_none();
     let peaks = if free { decay::oscillator(record, clock) } else { None };
-    let samples = if free && !peaks.as_ref().is_some_and(is_well_known) {
+    let is_coarse = peaks
+        .as_ref()
+        .and_then(LinearOscillator::natural_frequency_hz)
+        .is_some_and(|frequency| clock.sample_rate_hz < MANY_PER_PERIOD * frequency.value);
+    let samples = if free && (is_coarse || !peaks.as_ref().is_some_and(is_well_known)) {
         SamplesPipeline::DEFAULT.oscillator(record, clock).ok()
     } else {
         None
     };
     match (peaks, samples) {
-        (Some(peaks), Some(samples)) if peaks.damping.std_error < TIGHTER * samples.damping.std_error => {
+        (Some(peaks), Some(samples))
+            if !is_coarse && peaks.damping.std_error < TIGHTER * samples.damping.std_error =>
+        {
             Ok(peaks)
         }
         (_, Some(samples)) if samples.damping_ratio().is_some_and(|ratio| ratio.value > FEW_CYCLES) => {
@@ -67,6 +73,8 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
 const FEW_CYCLES: f64 = 0.2;
 /// Standard errors of a damping ratio, relative and absolute, below which turning points need no help.
 const WELL_KNOWN: (f64, f64) = (0.05, 1e-4);
+/// Samples per period that turning points need.
+const MANY_PER_PERIOD: f64 = 8.0;
 /// Ratio of standard errors from which on the samples are believed and not the turning points.
 const TIGHTER: f64 = 2.0;
 

@@ -78,8 +78,9 @@ impl Parsed {
             _ => Coordinate::Displacement,
         };
         let mut findings = self.findings;
-        let stated = options.from_s.or(options.to_s).is_some();
-        let swings = if stated { Vec::new() } else { free_swings(&record) };
+        // A stated start is believed; before a stated end the swing still has to be found.
+        let until = record.clone().between(None, options.to_s)?.0;
+        let swings = if options.from_s.is_some() { Vec::new() } else { free_swings(&until) };
         let part = largest_part(&record, &swings);
         findings.extend(part.map(|part| part_said(&record, &swings, part)));
         let [from_s, to_s] = part.map_or([options.from_s, options.to_s], |part| part.map(Some));

@@ -95,9 +95,7 @@ pub fn warnings(reference: &OracleSummary) -> Vec<String> {
 /// answer then leave this answer as it is, and are a remark below it; else they come before it.
 #[must_use]
 pub fn is_believed(pipelines: &[PipelineRow], data: &DataSummary) -> bool {
-    pipelines
-        .iter()
-        .any(|row| row.in_force && row.pipeline == "recommended" && row.clock == data.believed_clock)
+    pipelines.iter().any(|row| row.in_force && row.pipeline != "paper" && row.clock == data.believed_clock)
 }
 
 /// Returns the state of a bar in words: `within chance` only if the interval contains the bar.

@@ -166,10 +166,8 @@ impl<'a> Inclusion<'a> {
     fn may_be_zero(&self, class: EvidenceClass) -> bool {
         let Some((with, _)) = self.first(&|fit| fit.hypothesis.holds(class)) else { return false };
         let (fit, facts) = (with.fit, &self.records.data.facts);
+        let is_told = |value: f64, error: f64| value.abs() > normal_above(0.025) * error;
         let variance = fit.variance();
-        let is_told = |place: usize, value: f64| {
-            value.abs() > normal_above(0.025) * (variance * entry(&fit.inverse, place, place)).sqrt()
-        };
         let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
         let mut own = parts.into_iter().filter(|(member, _, _)| {
             fit.hypothesis.candidates.contains(member) && member.evidence_class() == class
@@ -177,8 +175,17 @@ impl<'a> Inclusion<'a> {
         own.all(|(member, place, values)| {
             let Some(first) = place.filter(|_| !member.is_flexible()) else { return false };
             let parameters = member.parameters(facts);
-            let mut sizes = parameters.iter().zip(values).enumerate().filter(|(_, (own, _))| !own.shape);
-            sizes.all(|(at, (_, value))| !is_told(first + at, *value))
+            let is_size = |at: usize| parameters.get(at).is_some_and(|own| !own.shape);
+            let fitted = values.iter().enumerate().map(|(at, value)| {
+                (at, *value, (variance * entry(&fit.inverse, first + at, first + at)).sqrt())
+            });
+            // A torque may be told though its direction, and with it each of its components, is not.
+            let stated = member.values(values).into_iter().zip(fit.spread(member, first, values)).enumerate();
+            let stated = stated.map(|(at, (value, error))| (at, value, error));
+            // A saturation is as large as its bound is small, and that is a shape: its center says nothing of it.
+            let has_size = parameters.first().is_some_and(|first| !first.shape);
+            let mut sizes = fitted.chain(stated).filter(|(at, ..)| is_size(*at));
+            has_size && sizes.all(|(_, value, error)| !is_told(value, error))
         })
     }
 

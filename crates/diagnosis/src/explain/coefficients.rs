@@ -5,12 +5,11 @@ use crate::evidence::context::Context;
 use crate::evidence::determined::says_something;
 use crate::fit::fitted::Fit;
 use crate::fit::normal_equations::UNBOUNDED;
-use crate::matrices::{entry, set};
+use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated as Coefficient, Known};
 use crate::noise::statistics::normal_above;
 use dynamics::{NominalSimulator, Units};
-use nalgebra::DMatrix;
 use record::Quantity;
 
 pub(crate) fn around(value: f64, error: f64) -> Interval {
@@ -27,19 +26,6 @@ pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
     around(value, (fit.variance() * entry(&fit.inverse, index, index)).max(0.0).sqrt())
 }
 
-/// Returns the standard errors of a law's parameters. `fitted` are its fitted parameters, which begin at
-/// index `at` of the globals.
-pub(crate) fn spread(fit: &Fit, candidate: Candidate, at: usize, fitted: &[f64]) -> Vec<f64> {
-    let count = fitted.len();
-    let mut change = DMatrix::identity(count, count);
-    for (row, column, slope) in candidate.slopes(fitted) {
-        set(&mut change, row, column, slope);
-    }
-    let own = DMatrix::from_fn(count, count, |i, j| entry(&fit.inverse, at + i, at + j));
-    let covariance = &change * own * change.transpose() * fit.variance();
-    covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
-}
-
 /// Returns a fit's estimates of the parameters of one effect; empty if the fit lacks the effect or holds it.
 pub(crate) fn parameters(work: &Context<'_>, fit: &Fit, candidate: Candidate) -> Vec<ParameterEstimate> {
     let facts = &work.data.facts;
@@ -47,7 +33,7 @@ pub(crate) fn parameters(work: &Context<'_>, fit: &Fit, candidate: Candidate) ->
     let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
     let own = parts.into_iter().find(|(effect, _, _)| *effect == candidate);
     let Some((_, Some(at), fitted)) = own else { return Vec::new() };
-    let spread = spread(fit, candidate, at, fitted);
+    let spread = fit.spread(candidate, at, fitted);
     let named = candidate.parameters(facts).into_iter().zip(candidate.values(fitted)).zip(spread);
     let mut estimates: Vec<ParameterEstimate> = named
         .enumerate()

@@ -4,7 +4,7 @@ use crate::answer::{Interval, RepairedSimulator, Undetermined};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::evidence::determined::{reach, says_something};
-use crate::explain::coefficients::{around, interval, spread};
+use crate::explain::coefficients::{around, interval};
 use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::significance::{OFF_BY_CHANCE, significant};
@@ -123,7 +123,7 @@ fn numbers(data: &Data, fit: &Fit) -> Vec<Number> {
         let is_own =
             |which: &&Calibrated| matches!(which, Calibrated::Effect { known, .. } if *known == index);
         let held: Vec<Calibrated> = own.iter().filter(is_own).copied().collect();
-        let values = effect.values(fitted).into_iter().zip(spread(fit, effect, place, fitted));
+        let values = effect.values(fitted).into_iter().zip(fit.spread(effect, place, fitted));
         for (at, ((value, error), parameter)) in values.zip(effect.parameters(facts)).enumerate() {
             let name = format!("{}.{}", effect.id(), parameter.name);
             all.push(number(name, held.clone(), effect.quantity(at), &around(value, error)));

@@ -1,6 +1,8 @@
 //! Starting point and result of a fit.
 
 use crate::data::segments::Data;
+use crate::matrices::{entry, set};
+use crate::model::candidate::Candidate;
 use crate::model::hypothesis::Hypothesis;
 use crate::noise::statistics::autocorrelation_time;
 use nalgebra::{DMatrix, DVector};
@@ -68,6 +70,19 @@ impl Fit {
     /// autocorrelation time.
     pub(crate) fn variance(&self) -> f64 {
         self.squares / self.freedom() * self.autocorrelation_time()
+    }
+
+    /// Returns the standard errors of a law's parameters. `fitted` are its fitted parameters, which begin at index `at` of
+    /// the globals.
+    pub(crate) fn spread(&self, candidate: Candidate, at: usize, fitted: &[f64]) -> Vec<f64> {
+        let count = fitted.len();
+        let mut change = DMatrix::identity(count, count);
+        for (row, column, slope) in candidate.slopes(fitted) {
+            set(&mut change, row, column, slope);
+        }
+        let own = DMatrix::from_fn(count, count, |i, j| entry(&self.inverse, at + i, at + j));
+        let covariance = &change * own * change.transpose() * self.variance();
+        covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
     }
 
     pub(crate) fn autocorrelation_time(&self) -> f64 {

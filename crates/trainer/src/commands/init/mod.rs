@@ -1,5 +1,6 @@
 //! `trainer init`: a first look at a log, and files to start from.
 
+mod damping;
 mod looked;
 mod modes;
 
@@ -58,6 +59,8 @@ struct Found {
     each: Vec<EachLog>,
     coordinate: Coordinate,
     folder: PathBuf,
+    /// Remark on a damping ratio that changes along the decay.
+    changing: Option<String>,
     /// Names of the files with their texts.
     files: Vec<(&'static str, String)>,
     /// Purpose of each suggested command, and the command.
@@ -107,7 +110,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let coordinate = coordinate_of(look.source.reading.coordinate);
     let name = path.display().to_string();
     let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
-    let mut next = Vec::new();
+    let (mut next, mut changing) = (Vec::new(), None);
     if is_diagnosable(&surest) {
         next.push((
             "what a linear oscillator with these numbers lacks",
@@ -123,6 +126,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     // Only a free decay has an envelope from which a damping ratio can be estimated.
     let envelope = envelope_by_default(&look.record, &look.clock);
     if let Some(envelope) = envelope.ok().filter(|_| oscillator.input_gain.is_none()) {
+        changing = damping::changing(&envelope.envelope);
         let path = path_from(&folder, path).display().to_string();
         files.push(("estimate.toml", files::configuration(&path, &options(&surest))));
         next.push((
@@ -133,7 +137,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
             format!("trainer {}", path_word(&folder.join("estimate.toml"))),
         ));
     }
-    Ok(Found { surest, each, coordinate, folder, files, next })
+    Ok(Found { surest, each, coordinate, folder, changing, files, next })
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
@@ -312,6 +316,7 @@ impl Found {
             .chain(self.no_swing())
             .chain(modes::remark(&self.surest.modes))
             .chain(self.uneven())
+            .chain(self.changing.clone())
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -347,7 +352,7 @@ impl Found {
         // Times of the clock begin where the stamps do.
         let shift = look.record.stamps_s().first()? - look.clock.start_s();
         Some(format!(
-            "amplitude or phase change unevenly outside {from:.2} s to {to:.2} s, as if a hand or something else moved it \
+            "amplitude or phase change unevenly outside {from:.2} s to {to:.2} s, as if a hand moved it or friction stopped it \
              there: --from {from:.2} --to {to:.2} read that part alone",
             from = from + shift,
             to = to + shift
@@ -368,7 +373,8 @@ impl Found {
             ),
             None => Some(
                 "no oscillation: the record comes to rest without a swing, as an overdamped or critically damped system \
-                 does, or it drifts; neither a frequency nor a damping ratio can be read from it"
+                 does, or it drifts, or is sampled less than five times in a cycle; neither a frequency nor a damping ratio \
+                 can be read from it"
                     .to_owned(),
             ),
         }
