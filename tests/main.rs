@@ -50,6 +50,7 @@ mod simulation;
 mod slurm;
 mod support;
 mod sweep;
+mod told;
 mod trials;
 mod units;
 mod unnamed;
