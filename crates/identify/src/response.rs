@@ -60,6 +60,8 @@ const FASTEST: f64 = 1.0;
 /// Number of guesses of the frequency, and those of the damping ratio.
 const GRID: u32 = 16;
 const DAMPINGS: [f64; 2] = [0.1, 0.5];
+/// Largest part of a record's variance that a response may leave.
+const UNEXPLAINED: f64 = 0.8;
 /// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
 /// of 1.
 const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
@@ -89,7 +91,7 @@ pub(crate) fn driven(
     // A response misses much more of a system that is not linear than a regression over short windows.
     let noise = noise_level(record.values()).max(record.lattice().map_or(0.0, |lattice| lattice.step)); // 0: not rounded.
     let is_linear = rest < record.len() as f64 * (LINEAR * noise).powi(2);
-    sprung(Some((rest, found))).filter(|_| is_linear || guess.is_none())
+    sprung(Some((rest, found)), record).filter(|_| is_linear || guess.is_none())
 }
 
 /// Fits a motion that returns to rest in a few cycles or without a swing, from a first guess and from others. `None` if
@@ -103,7 +105,7 @@ pub(crate) fn returning(
     let duration_s = clock.times_s.last()? - clock.start_s();
     let creeping = CREEPING.map(|omega| omega / duration_s).map(|omega| [omega * omega, 2.0 * omega]);
     let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value]);
-    sprung(nearest(guess.into_iter().chain(creeping).filter_map(|start| problem.fitted(start))))
+    sprung(nearest(guess.into_iter().chain(creeping).filter_map(|start| problem.fitted(start))), record)
 }
 
 /// Returns the fit with the smallest residuals.
@@ -111,10 +113,14 @@ fn nearest(fits: impl Iterator<Item = (f64, LinearOscillator)>) -> Option<(f64, 
     fits.min_by(|(one, _), (other, _)| one.total_cmp(other))
 }
 
-/// Returns the oscillator of a fit if a spring pulls it back.
-fn sprung(fit: Option<(f64, LinearOscillator)>) -> Option<LinearOscillator> {
-    let (_, found) = fit?;
-    (found.stiffness.value > SIGNIFICANT * found.stiffness.std_error).then_some(found)
+/// Returns the oscillator of a fit if a spring pulls it back, and if it explains a part of the record that noise does not.
+fn sprung(fit: Option<(f64, LinearOscillator)>, record: &Record) -> Option<LinearOscillator> {
+    let (rest, found) = fit?;
+    let values = record.values();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let total: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let is_seen = rest < UNEXPLAINED * total;
+    (is_seen && found.stiffness.value > SIGNIFICANT * found.stiffness.std_error).then_some(found)
 }
 
 /// Time from which the input changes at a constant rate.
@@ -375,6 +381,20 @@ mod tests {
         };
         let values = times.iter().map(|time| 0.3 + motion(*time) + normal.sample(&mut draws)).collect();
         Record::new(times, values, None, Quantity::Position, "rad").unwrap()
+    }
+
+    #[test]
+    fn noise_is_no_response() {
+        for seed in 0..5 {
+            let normal = Normal::new(0.0, 1.0).unwrap();
+            let mut draws = Seed::new(seed).child("noise").generator();
+            let times: Vec<f64> = (0..3000).map(|at| 0.01 * f64::from(at)).collect();
+            let values = times.iter().map(|_| normal.sample(&mut draws)).collect();
+            let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+            let found = identify(&record, &Clock::new(&record, ClockChoice::Auto).unwrap()).unwrap();
+            let frequency = found.natural_frequency_hz();
+            assert!(frequency.is_none_or(|own| own.std_error > 0.03 * own.value), "{seed}: {found:?}");
+        }
     }
 
     #[test]

@@ -109,6 +109,9 @@ fn rank(heading: &Heading, list: &[&str]) -> Option<usize> {
     list.iter().position(|word| heading.has(word))
 }
 
+/// Words for the length of a vector whose components are columns too.
+const OF_VECTORS: &[&str] = &["absolute", "abs", "magnitude", "norm", "betrag", "total"];
+
 fn drives(heading: &Heading) -> bool {
     rank(heading, TORQUES).or_else(|| rank(heading, INPUTS)).is_some()
         || heading.unit().is_some_and(|unit| unit.dimension() == Dimension::Drive)
@@ -256,7 +259,7 @@ impl Roles<'_> {
         if let Some(name) = &self.asked().value {
             return Ok((Pick { at: self.named(name, "data.value")?, because: NAMED }, None));
         }
-        let left: Vec<(usize, &Column)> = self
+        let mut left: Vec<(usize, &Column)> = self
             .columns
             .iter()
             .enumerate()
@@ -267,6 +270,11 @@ impl Roles<'_> {
                     && !column.heading.title.is_empty()
             })
             .collect();
+        // The length of a vector swings twice as fast as its components, beside which it says nothing.
+        let is_length = |column: &Column| OF_VECTORS.iter().any(|word| column.heading.has(word));
+        let components: Vec<Option<Unit>> =
+            left.iter().filter(|(_, own)| !is_length(own)).map(|(_, own)| own.heading.unit()).collect();
+        left.retain(|(_, own)| !is_length(own) || !components.contains(&own.heading.unit()));
         let mut found: Vec<(Score, usize)> =
             left.iter().filter_map(|(at, column)| Some((self.score(&column.heading)?, *at))).collect();
         found.sort_unstable();

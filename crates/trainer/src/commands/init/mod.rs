@@ -396,8 +396,8 @@ impl Found {
 const CRITICAL: f64 = 0.95;
 
 /// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
-/// records of noise, white or red, have 5 to 15 % or no frequency.
-const HARDLY_KNOWN: f64 = 0.04;
+/// records of noise, white or red, have 4 to 15 % or no frequency.
+const HARDLY_KNOWN: f64 = 0.03;
 
 /// Number of cycles below which a record says little about a decay: a diagnosis needs segments of them to
 /// hold out.
