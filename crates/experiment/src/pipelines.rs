@@ -48,6 +48,8 @@ pub struct EnvelopeSettings {
 
 /// Number of peaks below which the samples are fitted: four periods.
 const FEW_PEAKS: usize = 8;
+/// Smallest decay rate, in standard errors, of a record without enough peaks.
+const TOLD: f64 = 5.0;
 /// Smallest share of a second mode in the power of a record whose peaks mix two modes.
 const SECOND_MODE: f64 = 0.01;
 
@@ -89,10 +91,17 @@ fn chosen(
     let peaks = recommended.extract(record, clock);
     let Some(because) = unsuited(&peaks, record, clock) else { return peaks };
     match (samples.extract(record, clock), peaks) {
-        (Ok(samples), _) => Ok(Extraction { because: Some(because), ..samples }),
+        (Ok(samples), peaks) if peaks.is_ok() || is_told(&samples) => {
+            Ok(Extraction { because: Some(because), ..samples })
+        }
         (Err(EnvelopeError::NoSwing), Err(_)) => Err(EnvelopeError::NoSwing),
-        (Err(_), peaks) => peaks,
+        (_, peaks) => peaks,
     }
+}
+
+/// Returns `true` if windows tell a decay: a swing that stops within a cycle has none.
+fn is_told(samples: &Extraction) -> bool {
+    oracle::decay_rate(&samples.envelope).is_ok_and(|fit| fit.decay_rate > TOLD * fit.std_error)
 }
 
 /// Returns the reason why peaks do not give the decay of a record, if there is one.
