@@ -82,7 +82,8 @@ def estimate(
 ) -> Estimate:
     """Estimates the damping ratio of a free decay.
 
-    method: one of ``methods()``, or an object with ``fit`` (see ``Estimator``). pipeline: ``"recommended"`` or ``"paper"``.
+    method: one of ``methods()``, or an object with ``fit`` (see ``Estimator``). pipeline: ``"auto"``, ``"recommended"``, ``"samples"`` or
+    ``"paper"``.
     max_steps: cap on the training steps, 0 for the untrained estimate.
     settings: settings of the method, such as ``{"hidden": [16]}``.
 

@@ -24,7 +24,7 @@ pub(crate) fn estimate<'py>(
     settings: String,
 ) -> PyResult<Bound<'py, PyDict>> {
     let record = record.get().record(py)?;
-    let pipeline = crate::words::optional::<Pipeline>("pipeline", pipeline)?.unwrap_or(Pipeline::Recommended);
+    let pipeline = crate::words::optional::<Pipeline>("pipeline", pipeline)?.unwrap_or(Pipeline::Auto);
     let options = EstimateOptions { pipeline, seed, max_steps, settings };
     let found = beside(py, None, move |watch| estimate_until(&record, &method, &options, &watch.cancel))?;
     told(py, &found.map_err(raised)?)
@@ -43,7 +43,7 @@ pub(crate) fn estimate_own<'py>(
     seed: u64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let record = record.get().record(py)?;
-    let pipeline = crate::words::optional::<Pipeline>("pipeline", pipeline)?.unwrap_or(Pipeline::Recommended);
+    let pipeline = crate::words::optional::<Pipeline>("pipeline", pipeline)?.unwrap_or(Pipeline::Auto);
     let options = EstimateOptions { pipeline, seed, ..EstimateOptions::default() };
     let found =
         beside(py, None, move |_| estimate_with(&record, &name, &PythonEstimator { object }, &options))?;
