@@ -139,8 +139,7 @@ impl RecommendedPipeline {
 /// Returns the noise, of which rounding is a part, and the step of the values; 0 for a step if there is none.
 fn noise_and_quantum(record: &Record) -> (f64, f64) {
     let values = record.values();
-    // Values without a lattice are not rounded.
-    let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
+    let quantum = record.quantum();
     let noise = match noise_level(values) {
         // A log that is filled up with zeros is constant in most of its samples; the noise is in the others.
         0.0 if quantum < FINE * range(values) => noise_level(&moving(values)),

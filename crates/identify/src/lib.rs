@@ -17,6 +17,7 @@ mod oscillator;
 mod regular;
 mod response;
 mod samples_pipeline;
+mod scaled;
 mod weak;
 
 pub use error::IdentifyError;

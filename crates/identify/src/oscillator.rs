@@ -64,7 +64,16 @@ impl LinearOscillator {
     }
 }
 
+/// Number of standard errors from which a number counts as different from zero.
+const SIGNIFICANT: f64 = 3.0;
+
 impl Estimated {
+    /// Returns `true` if the value differs from zero by more than three standard errors.
+    #[must_use]
+    pub fn is_significant(self) -> bool {
+        self.value.abs() > SIGNIFICANT * self.std_error
+    }
+
     pub(crate) fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, std_error: self.std_error * factor.abs() }
     }

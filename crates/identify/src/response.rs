@@ -5,6 +5,7 @@
 //! numbers. A regression over windows gives the first guess; it weighs the noise less well, since it differentiates.
 
 use crate::observed::{input, order};
+use crate::scaled::{inverse, solve};
 use crate::{Basis, Estimated, LinearOscillator};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use record::{Clock, Record, noise_level};
@@ -50,8 +51,6 @@ const SETTLED: f64 = 1e-10;
 const LONGEST: f64 = 0.15;
 /// Most integration steps between two samples.
 const MOST_STEPS: f64 = 200.0;
-/// Smallest stiffness that counts as a restoring torque, in its standard errors.
-const SIGNIFICANT: f64 = 3.0;
 /// Residuals of a linear system's response, in units of the noise.
 const LINEAR: f64 = 4.0;
 /// Lowest guess of a natural frequency, in radians per record, and highest one, in radians per sampling interval.
@@ -75,8 +74,7 @@ pub(crate) fn driven(
 ) -> Option<LinearOscillator> {
     let pushes = input(record, clock)?;
     let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value.max(0.0)]);
-    let duration_s = clock.times_s.last()? - clock.start_s();
-    let (slowest, fastest) = (SLOWEST / duration_s, FASTEST * clock.sample_rate_hz);
+    let (slowest, fastest) = (SLOWEST / clock.duration_s(), FASTEST * clock.sample_rate_hz);
     let fits = [true, false].map(|kept| {
         let problem = Problem::new(record, clock, &pushes, kept);
         let grid = (0..GRID).flat_map(|number| {
@@ -89,7 +87,7 @@ pub(crate) fn driven(
     });
     let (rest, found) = nearest(fits.into_iter().flatten())?;
     // A response misses much more of a system that is not linear than a regression over short windows.
-    let noise = noise_level(record.values()).max(record.lattice().map_or(0.0, |lattice| lattice.step)); // 0: not rounded.
+    let noise = noise_level(record.values()).max(record.quantum());
     let is_linear = rest < record.len() as f64 * (LINEAR * noise).powi(2);
     sprung(Some((rest, found)), record).filter(|_| is_linear || guess.is_none())
 }
@@ -102,8 +100,7 @@ pub(crate) fn returning(
     guess: Option<&LinearOscillator>,
 ) -> Option<LinearOscillator> {
     let problem = Problem::new(record, clock, &[], false);
-    let duration_s = clock.times_s.last()? - clock.start_s();
-    let creeping = CREEPING.map(|omega| omega / duration_s).map(|omega| [omega * omega, 2.0 * omega]);
+    let creeping = CREEPING.map(|omega| omega / clock.duration_s()).map(|omega| [omega * omega, 2.0 * omega]);
     let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value]);
     sprung(nearest(guess.into_iter().chain(creeping).filter_map(|start| problem.fitted(start))), record)
 }
@@ -120,7 +117,7 @@ fn sprung(fit: Option<(f64, LinearOscillator)>, record: &Record) -> Option<Linea
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let total: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     let is_seen = rest < UNEXPLAINED * total;
-    (is_seen && found.stiffness.value > SIGNIFICANT * found.stiffness.std_error).then_some(found)
+    (is_seen && found.stiffness.value > 0.0 && found.stiffness.is_significant()).then_some(found)
 }
 
 /// Time from which the input changes at a constant rate.
@@ -236,9 +233,7 @@ impl Problem {
         }
         let slope =
             DVector::from_iterator(free.len(), free.iter().filter_map(|at| sums.slope.get(*at).copied()));
-        let scale = normal.diagonal().map(f64::sqrt);
-        let scaled = normal.component_div(&(&scale * scale.transpose()));
-        let solution = scaled.cholesky()?.solve(&slope.component_div(&scale)).component_div(&scale);
+        let solution = solve(&normal, &slope)?;
         let mut step = [0.0; COUNT];
         for (at, value) in free.iter().zip(solution.iter()) {
             *step.get_mut(*at)? = *value;
@@ -256,10 +251,7 @@ impl Problem {
     fn oscillator(&self, numbers: &Numbers, sums: &Sums) -> Option<LinearOscillator> {
         let free = self.free();
         let freedom = self.samples.checked_sub(free.len()).filter(|freedom| *freedom > 0)? as f64;
-        let normal = self.normal(sums, &free)?;
-        let scale = normal.diagonal().map(f64::sqrt);
-        let scales = &scale * scale.transpose();
-        let inverse = normal.component_div(&scales).cholesky()?.inverse().component_div(&scales);
+        let inverse = inverse(&self.normal(sums, &free)?)?;
         // Residuals of which neighbors are alike tell less: those of a first-order autoregression.
         let alike = (sums.next / sums.rest).clamp(0.0, 0.999);
         let variance = sums.rest / freedom * (1.0 + alike) / (1.0 - alike);

@@ -151,8 +151,8 @@ impl SamplesPipeline {
         })
     }
 
-    /// Returns all windows of a period whose amplitude is clear, whether or not they belong to one free decay, with the noise of a
-    /// sample.
+    /// Returns all windows of a period whose amplitude is clear, whether or not they belong to one free decay, with the
+    /// noise of a sample.
     pub(crate) fn clear_windows(&self, record: &Record, clock: &Clock) -> Option<(Vec<Window>, f64)> {
         let swing = Swing::guessed(record, clock).ok()?;
         let (windows, _) = swing.windows(&clock.times_s, TAU / swing.omega);
@@ -170,7 +170,7 @@ impl SamplesPipeline {
         let mut periods = self.window_periods;
         while matches!(fitted, Err(EnvelopeError::TooFewPeaks { .. })) {
             periods *= 2.0;
-            if periods * TAU / guess.omega > LONGEST * guess.duration_s(clock) {
+            if periods * TAU / guess.omega > LONGEST * clock.duration_s() {
                 break;
             }
             fitted = self.settled(guess.clone(), periods, clock).or(fitted);
@@ -256,8 +256,7 @@ impl Swing {
     /// Takes the nearest linear oscillator, or the strongest mode of a record that swings for long enough to show
     /// modes.
     fn guessed(record: &Record, clock: &Clock) -> Result<Self, EnvelopeError> {
-        // Values without a lattice are not rounded.
-        let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
+        let quantum = record.quantum();
         let nearest = weak::oscillator(record, clock).map(|found| {
             let decay = found.damping.times(0.5);
             ((found.stiffness.value - decay.value * decay.value).max(0.0).sqrt(), decay)
@@ -285,11 +284,6 @@ impl Swing {
     fn checked(self) -> Result<Self, EnvelopeError> {
         let swings = self.omega > LEAST_SWING * self.decay.abs() && self.omega.is_finite();
         if swings && self.decay.is_finite() { Ok(self) } else { Err(EnvelopeError::NoSwing) }
-    }
-
-    fn duration_s(&self, clock: &Clock) -> f64 {
-        // A clock without times has no duration.
-        clock.times_s.last().map_or(0.0, |last| last - clock.start_s())
     }
 
     /// Corrects the frequency by the drift of the windows' phases, and the decay by that of their amplitudes.

@@ -26,8 +26,6 @@ const WINDOWS_EACH: usize = 3;
 const EXPONENT: i32 = 4;
 /// Smallest step between samples that counts as a gap, in usual steps.
 const GAP: f64 = 4.0;
-/// Smallest stiffness that counts as a restoring torque, in its standard errors.
-const SIGNIFICANT: f64 = 3.0;
 
 /// Fits damping, stiffness, input gain and rest position to all windows of a record.
 ///
@@ -59,7 +57,7 @@ impl Samples<'_> {
         }
         let with_spring = fit(&rows, columns, true)?;
         let [_, stiffness, ..] = with_spring.0;
-        let restored = stiffness.value > SIGNIFICANT * stiffness.std_error;
+        let restored = stiffness.value > 0.0 && stiffness.is_significant();
         let ([damping, stiffness, shift, gain], rest) =
             if restored { with_spring } else { fit(&rows, columns, false)? };
         let center = (restored && self.order == 0).then(|| shift.times(1.0 / stiffness.value));

@@ -173,6 +173,13 @@ impl Clock {
         record.input_rows().iter().map(|own| (time(own), own.input)).collect()
     }
 
+    /// Returns the time from the first sample to the last one, in seconds.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        // A clock without times has no duration.
+        self.times_s.last().map_or(0.0, |last| last - self.start_s())
+    }
+
     /// Returns the time of the first sample, in seconds.
     #[must_use]
     pub fn start_s(&self) -> f64 {

@@ -79,14 +79,17 @@ impl Parsed {
         };
         let mut findings = self.findings;
         // A stated start is believed; before a stated end the swing still has to be found.
-        let until = record.clone().between(None, options.to_s)?.0;
-        let swings = if options.from_s.is_some() { Vec::new() } else { free_swings(&until) };
+        let swings = match (options.from_s, options.to_s) {
+            (Some(_), _) => Vec::new(),
+            (None, None) => free_swings(&record),
+            (None, to_s) => free_swings(&record.clone().between(None, to_s)?.0),
+        };
         let part = largest_part(&record, &swings);
         findings.extend(part.map(|part| part_said(&record, &swings, part)));
         let [from_s, to_s] = part.map_or([options.from_s, options.to_s], |part| part.map(Some));
-        let whole = Whole::new(&record, swings.iter().filter_map(|swing| ends(&record, swing)).collect());
+        let free = || swings.iter().filter_map(|swing| ends(&record, swing)).collect();
+        let whole = from_s.or(to_s).map(|_| Whole::new(&record, free()));
         let (record, part_s) = record.between(from_s, to_s)?;
-        let whole = part_s.map(|_| whole);
         let reading =
             Reading { quantity, coordinate, part_s, whole, ..self.reading }.worded(rate_hz, self.kind);
         // A stated number of samples is that of the whole file.

@@ -265,6 +265,13 @@ impl Record {
         self.unit
     }
 
+    /// Returns the step that the values are rounded to, in their unit; 0 if they lie on no lattice.
+    #[must_use]
+    pub fn quantum(&self) -> f64 {
+        // Values without a lattice are not rounded.
+        self.lattice().map_or(0.0, |lattice| lattice.step)
+    }
+
     /// Returns the lattice of the sensor's steps, if the values lie on one.
     #[must_use]
     pub fn lattice(&self) -> Option<Lattice> {

@@ -5,16 +5,9 @@ use results::{ModeRow, WithInterval};
 use crate::classes::listed;
 use crate::format::{percent, quantity, with_uncertainty};
 
-/// Standard errors from the center of a 95 % interval to its ends.
-const NINETY_FIVE: f64 = 1.96;
-
 /// Returns each mode with its frequency, its damping ratio and its share of the power.
-#[must_use]
-pub fn mode_words(modes: &[ModeRow]) -> Vec<String> {
-    let uncertain = |number: &WithInterval| {
-        let [low, high] = number.interval_95;
-        with_uncertainty(number.value, 0.5 * (high - low) / NINETY_FIVE)
-    };
+pub(crate) fn mode_words(modes: &[ModeRow]) -> Vec<String> {
+    let uncertain = |number: &WithInterval| with_uncertainty(number.value, number.std_error());
     let words = |mode: &ModeRow| {
         let (frequency, ratio) = (uncertain(&mode.frequency_hz), uncertain(&mode.damping_ratio));
         let share = percent(100.0 * mode.share);

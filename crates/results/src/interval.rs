@@ -13,6 +13,25 @@ pub struct WithInterval {
     pub interval_95: [f64; 2],
 }
 
+/// Distance of the ends of a 95 % interval from a normally distributed estimate, in standard errors.
+const NINETY_FIVE: f64 = 1.96;
+
+impl WithInterval {
+    /// Creates a normally distributed estimate from its standard error.
+    #[must_use]
+    pub fn normal(value: f64, std_error: f64) -> Self {
+        let half = NINETY_FIVE * std_error;
+        Self { value, interval_95: [value - half, value + half] }
+    }
+
+    /// Returns the standard error of a normally distributed estimate.
+    #[must_use]
+    pub fn std_error(&self) -> f64 {
+        let [low, high] = self.interval_95;
+        0.5 * (high - low) / NINETY_FIVE
+    }
+}
+
 /// Deserializes a number, reading `null` as NaN: JSON cannot express numbers that are not finite and writes
 /// `null`.
 pub(crate) fn null_is_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {

@@ -5,6 +5,7 @@
 //! coefficients first and then for the frequencies and decays together with them.
 
 use super::samples::Samples;
+use crate::scaled::{inverse, solve};
 use nalgebra::{DMatrix, DVector};
 
 /// Number of columns of the trend.
@@ -242,19 +243,4 @@ fn gram(samples: &Samples, lines: &[Line]) -> DMatrix<f64> {
         }
     }
     gram
-}
-
-/// Returns the inverse of a symmetric positive definite matrix, scaled to a diagonal of 1 in between.
-fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let sizes = matrix.diagonal().map(f64::sqrt);
-    if sizes.iter().any(|size| !size.is_finite() || *size <= 0.0) {
-        return None;
-    }
-    let scale = &sizes * sizes.transpose();
-    let scaled = matrix.component_div(&scale).cholesky()?;
-    Some(scaled.inverse().component_div(&scale))
-}
-
-fn solve(matrix: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
-    Some(inverse(matrix)? * target)
 }

@@ -28,7 +28,7 @@ pub(super) fn looked(path: &Path, reading: &Reading) -> Result<Looked, TrainerEr
     let input = look.source.reading.input.as_ref().map(|input| input.column.clone());
     let found = identified(path, reading, look);
     let follows = match &found {
-        Ok(found) => found.oscillator.input_gain.is_some_and(is_significant),
+        Ok(found) => found.oscillator.input_gain.is_some_and(Estimated::is_significant),
         // A constant input cannot be distinguished from a rest position.
         Err(TrainerError::Workflow(WorkflowError::Identify { .. })) => false,
         Err(_) => true,
@@ -42,13 +42,6 @@ pub(super) fn looked(path: &Path, reading: &Reading) -> Result<Looked, TrainerEr
     ));
     identified(path, &reading, look)
 }
-
-pub(super) fn is_significant(estimated: Estimated) -> bool {
-    estimated.value.abs() > SIGNIFICANT * estimated.std_error
-}
-
-/// Number of standard errors above zero from which a number counts as different from zero.
-const SIGNIFICANT: f64 = 3.0;
 
 /// Reads a log by the options; compares the rate that it states with its stamps.
 fn read(path: &Path, reading: &Reading) -> Result<Look, TrainerError> {
@@ -79,9 +72,7 @@ fn identified(path: &Path, reading: &Reading, look: Look) -> Result<Looked, Trai
 
 impl Looked {
     pub(super) fn duration_s(&self) -> f64 {
-        let times = &self.look.clock.times_s;
-        // A record without samples has a duration of zero.
-        times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
+        self.look.clock.duration_s()
     }
 
     /// Returns the number of cycles in the record; `None` without a natural frequency.

@@ -14,7 +14,7 @@ use clap::Args;
 use dynamics::Coordinate;
 use experiment::envelope_by_default;
 use identify::{Estimated, regular_part};
-use looked::{Looked, is_significant, looked};
+use looked::{Looked, looked};
 use modes::uncertain;
 use record::Fault;
 use report::format::significant;
@@ -325,7 +325,7 @@ impl Found {
     /// Returns a warning if the swing grows, which no passive system does.
     fn growth(&self) -> Option<String> {
         let damping = self.surest.oscillator.damping;
-        (damping.value < 0.0 && is_significant(damping)).then(|| {
+        (damping.value < 0.0 && damping.is_significant()).then(|| {
             "the swing grows: something adds energy to it, which no passive simulator can do; the written \
              damping is 0"
                 .to_owned()
