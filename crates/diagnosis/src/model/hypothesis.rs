@@ -9,6 +9,9 @@ use dynamics::{
 };
 use record::Quantity;
 
+/// Smallest time constant I/c of the inertia that a fit may reach, in sampling intervals.
+const STIFFEST: f64 = 0.5;
+
 /// Number that calibration may move: a nominal coefficient, or a parameter of a known effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Calibrated {
@@ -169,8 +172,7 @@ impl Hypothesis {
         let plain = |which: Calibrated| Parameter {
             name: which.name(),
             lower: match which {
-                // Mistaken units may put the inertia off by a factor of a thousand.
-                Calibrated::Inertia => 1e-6 * facts.inertia,
+                Calibrated::Inertia => self.least_inertia(facts),
                 Calibrated::Damping | Calibrated::Stiffness => 0.0,
                 Calibrated::RestAngle | Calibrated::Effect { .. } => f64::NEG_INFINITY,
             },
@@ -182,6 +184,15 @@ impl Hypothesis {
         let nominal =
             self.calibrated.iter().map(|&which| self.of_known(which, facts).unwrap_or(plain(which)));
         nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
+    }
+
+    /// Returns the lower bound of the inertia: one at which the motion follows the torque within a part of a
+    /// sampling interval, so that no sample tells a smaller one apart and the equation of motion is stiff; at most
+    /// a tenth of the nominal inertia, at least a millionth of it, since mistaken units may put it off by a factor
+    /// of a thousand.
+    fn least_inertia(&self, facts: &Scales) -> f64 {
+        let unseen = STIFFEST * self.nominal.damping() * facts.interval;
+        unseen.clamp(1e-6 * facts.inertia, 0.1 * facts.inertia)
     }
 
     /// Returns a known effect's parameter with bounds that always include its stated value. The effect is
