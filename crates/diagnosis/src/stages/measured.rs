@@ -7,6 +7,7 @@ use crate::data::release;
 use crate::data::segments::{Data, MOST_SEARCHED, cut};
 use crate::error::DiagnosisError;
 use crate::measurement::signatures;
+use dynamics::NominalSimulator;
 
 /// Records, cut into segments.
 pub(crate) struct Measured {
@@ -21,6 +22,13 @@ pub(crate) struct Measured {
     pub(crate) findings: Vec<Finding>,
 }
 
+/// Damping ratio from which on a swing of six periods leaves less than a thousandth.
+const FORGETTING: f64 = 0.2;
+
+/// Maximum number of samples of a driven body that forgets its start: a hundred independent segments tell what all
+/// of them do.
+const MOST_FORGOTTEN: usize = 3000;
+
 impl Measured {
     pub(crate) fn of(request: &Request<'_>) -> Result<Self, DiagnosisError> {
         let records = request.records;
@@ -28,12 +36,22 @@ impl Measured {
         let (free, mut findings) = free(records, &kept);
         let all = cut(records, &free, request.simulator)?;
         findings.extend(signatures::without_motion(&free, all.samples()));
+        let forgets = all.driven() && forgets(request.simulator);
+        let most = if forgets { MOST_FORGOTTEN } else { MOST_SEARCHED };
         let sparser = all.sparser(MOST_SEARCHED);
-        let data = sparser.thinned(MOST_SEARCHED);
+        let data = sparser.thinned(most);
         let is_whole = data.samples() == sparser.samples();
         let samples_used = data.samples() as f64 / all.samples().max(1) as f64;
         Ok(Self { kept, free, data, is_whole, samples_used, findings })
     }
+}
+
+/// Returns `true` if a swing of the nominal simulator dies away within a segment. Its input alone then says where a
+/// driven body is: segments are independent samples of the same law, and nothing accumulates from one to the next.
+fn forgets(simulator: &NominalSimulator) -> bool {
+    let nominal = simulator.nominal();
+    let critical = 2.0 * nominal.inertia() * simulator.angular_frequency();
+    critical > 0.0 && nominal.damping() > FORGETTING * critical
 }
 
 /// Returns the kept samples of each record without those before its release, and the findings on the latter.
