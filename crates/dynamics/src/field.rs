@@ -32,8 +32,8 @@ pub(crate) struct State<S> {
     pub(crate) position: S,
     pub(crate) velocity: S,
     pub(crate) hidden: [S; SYSTEM_HIDDEN],
-    /// Torque of the input after gain and delay.
-    pub(crate) input: S,
+    /// Torque of the input after gain and delay, and its rate: see [`Moment::input_rate`].
+    pub(crate) input: [S; 2],
 }
 
 impl State<f64> {
@@ -44,7 +44,7 @@ impl State<f64> {
             position: S::from(self.position),
             velocity: S::from(self.velocity),
             hidden: self.hidden.map(S::from),
-            input: S::from(self.input),
+            input: self.input.map(S::from),
         }
     }
 }
@@ -100,11 +100,13 @@ impl<S: Scalar> Term<S> {
         for (own, all) in hidden.iter_mut().zip(state.hidden.iter().skip(self.hidden)) {
             *own = *all;
         }
+        let [input, input_rate] = state.input;
         Moment {
             time: state.time,
             position: state.position,
             velocity: state.velocity,
-            input: state.input,
+            input,
+            input_rate,
             hidden,
             nominal: *nominal,
             direction,
@@ -142,7 +144,8 @@ impl<S: Scalar> Field<S> {
     /// Returns the sum of all torques. In a mode that sticks dry friction contributes none.
     #[inline]
     pub(crate) fn torque(&self, state: &State<S>, mode: &Mode) -> S {
-        let nominal = self.spring(state) + self.damping(state) + state.input;
+        let [input, _] = state.input;
+        let nominal = self.spring(state) + self.damping(state) + input;
         self.moments(state, mode)
             .fold(nominal, |sum, (term, moment)| sum + term.effect.torque(&term.values, &moment))
     }

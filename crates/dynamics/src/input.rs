@@ -44,9 +44,9 @@ pub struct Input {
     times: Vec<f64>,
     values: Vec<f64>,
     hold: Hold,
-    /// Polynomials from each time to the next one, of the fraction of that time which has passed. Empty unless
-    /// the input is thinned.
-    curves: Vec<Cubic>,
+    /// Polynomials of the value and of its rate from each time to the next one, of the fraction of that time which
+    /// has passed. Empty unless the input is thinned.
+    curves: Vec<[Cubic; 2]>,
 }
 
 /// Input on one piece: a polynomial of the seconds since `from`, which holds until `until`.
@@ -55,13 +55,23 @@ pub(crate) struct Piece {
     pub(crate) from: f64,
     pub(crate) until: f64,
     terms: Cubic,
+    rate: Cubic,
+}
+
+/// Returns the coefficients of a polynomial about another point, `x` away.
+fn about([a, b, c, d]: Cubic, x: f64) -> Cubic {
+    [a + x * (b + x * (c + x * d)), b + x * (2.0 * c + x * 3.0 * d), c + x * 3.0 * d, d]
 }
 
 impl Piece {
     /// Returns the value at a time, and its first three Taylor coefficients there.
     pub(crate) fn expanded(&self, time: f64) -> Cubic {
-        let ([a, b, c, d], x) = (self.terms, time - self.from);
-        [a + x * (b + x * (c + x * d)), b + x * (2.0 * c + x * 3.0 * d), c + x * 3.0 * d, d]
+        about(self.terms, time - self.from)
+    }
+
+    /// Returns the rate at a time, and its first three Taylor coefficients there.
+    pub(crate) fn rate_expanded(&self, time: f64) -> Cubic {
+        about(self.rate, time - self.from)
     }
 
     pub(crate) fn at(&self, time: f64) -> f64 {
@@ -157,7 +167,7 @@ impl Input {
     /// Returns [`DynamicsError::BadInput`] if a value is not finite any more.
     pub fn scaled(&self, factor: f64) -> Result<Self, DynamicsError> {
         let values = self.values.iter().map(|value| value * factor).collect();
-        let curves = self.curves.iter().map(|curve| curve.map(|term| term * factor)).collect();
+        let curves = self.curves.iter().map(|curve| curve.map(|own| own.map(|term| term * factor))).collect();
         Ok(Self { curves, ..Self::new(self.times.clone(), values, self.hold)? })
     }
 
@@ -185,14 +195,20 @@ impl Input {
             return self.clone();
         }
         let kept: Vec<usize> = (0..last).step_by(count).chain([last]).collect();
-        let curves = kept.iter().zip(kept.iter().skip(1)).map(|(&from, &until)| self.closest(from, until));
+        let value: fn(&Piece, f64) -> f64 = Piece::at;
+        let rate: fn(&Piece, f64) -> f64 = |piece, time| {
+            let [rate, ..] = piece.rate_expanded(time);
+            rate
+        };
+        let curves = kept.iter().zip(kept.iter().skip(1));
+        let curves = curves.map(|(&from, &until)| [value, rate].map(|of| self.closest(from, until, of)));
         let of = |list: &[f64]| kept.iter().filter_map(|&index| list.get(index).copied()).collect();
         Self { times: of(&self.times), values: of(&self.values), hold: self.hold, curves: curves.collect() }
     }
 
-    /// Returns the polynomial that is closest to the input from one sample to another, as a sum of the
-    /// Legendre polynomials P₀ to P₃: their coefficients are the projections of the input.
-    fn closest(&self, from: usize, until: usize) -> Cubic {
+    /// Returns the polynomial that is closest to the input, or to its rate, from one sample to another, as a sum of the
+    /// Legendre polynomials P₀ to P₃: their coefficients are the projections of what `of` returns.
+    fn closest(&self, from: usize, until: usize, of: fn(&Piece, f64) -> f64) -> Cubic {
         let (begin, end) = (self.piece(from).until, self.piece(until).until);
         let mut projections = [0.0; 4];
         for index in from + 1..=until {
@@ -201,7 +217,7 @@ impl Input {
             for (node, weight) in QUADRATURE {
                 let time = piece.from + half * (1.0 + node);
                 let x = (2.0 * time - begin - end) / (end - begin);
-                let part = weight * half / (end - begin) * piece.at(time);
+                let part = weight * half / (end - begin) * of(&piece, time);
                 let legendre = [1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x];
                 for (sum, value) in projections.iter_mut().zip(legendre) {
                     *sum += part * value;
@@ -225,15 +241,36 @@ impl Input {
         let Some((from, value)) = before else {
             // An input without samples drives nothing.
             let value = at(&self.values, 0).unwrap_or(0.0);
-            return Piece { from: until, until, terms: [value, 0.0, 0.0, 0.0] };
+            return Piece { from: until, until, terms: [value, 0.0, 0.0, 0.0], rate: [0.0; 4] };
         };
         let length = until - from;
-        let terms = match (self.curves.get(index - 1), self.hold, at(&self.values, index)) {
-            (Some(&[a, b, c, d]), ..) => [a, b / length, c / length.powi(2), d / length.powi(3)],
-            (None, Hold::Linear, Some(next)) => [value, (next - value) / length, 0.0, 0.0],
-            _ => [value, 0.0, 0.0, 0.0],
+        let scaled = |[a, b, c, d]: Cubic| [a, b / length, c / length.powi(2), d / length.powi(3)];
+        let (terms, rate) = match (self.curves.get(index - 1), self.hold, at(&self.values, index)) {
+            (Some(&[value, rate]), ..) => (scaled(value), scaled(rate)),
+            (None, Hold::Linear, Some(next)) => {
+                let slope = (next - value) / length;
+                ([value, slope, 0.0, 0.0], [slope, 0.0, 0.0, 0.0])
+            }
+            _ => ([value, 0.0, 0.0, 0.0], [self.step_rate(index - 1), 0.0, 0.0, 0.0]),
         };
-        Piece { from, until, terms }
+        Piece { from, until, terms, rate }
+    }
+
+    /// Returns the step to a sample from the one before, over the time between the two: the rate that a digital
+    /// controller computes of a held input. 0 at the first sample.
+    fn step_rate(&self, index: usize) -> f64 {
+        let at = |list: &[f64], index: usize| list.get(index).copied();
+        let before = index.checked_sub(1);
+        let step = |list: &[f64]| Some(at(list, index)? - at(list, before?)?);
+        // The first sample has none before it.
+        step(&self.values).zip(step(&self.times)).map_or(0.0, |(value, time)| value / time)
+    }
+
+    /// Returns the rate at a time in seconds, in the input's unit per second.
+    #[must_use]
+    pub fn rate_at(&self, time: f64) -> f64 {
+        let [rate, ..] = self.piece(self.piece_index(time)).rate_expanded(time);
+        rate
     }
 
     /// Returns the index of the piece that holds just after a time.

@@ -29,6 +29,8 @@ pub struct Moment<S> {
     pub velocity: S,
     /// Torque of the input, after gain and delay.
     pub input: S,
+    /// Time derivative of that torque: of a held input, the step to its present sample over the time between the two.
+    pub input_rate: S,
     /// Hidden state of the effect.
     pub hidden: Hidden<S>,
     /// Nominal coefficients.

@@ -116,7 +116,7 @@ impl System {
         }
         let field = self.field();
         let hidden = field.relaxed(start.position, start.velocity);
-        let state = State { time: 0.0, position: start.position, velocity: 0.0, hidden, input: 0.0 };
+        let state = State { time: 0.0, position: start.position, velocity: 0.0, hidden, input: [0.0; 2] };
         // The spring's own torque and the part that the dead zone removes cancel, except for rounding.
         let spring = field.spring(&state).abs();
         if field.torque(&state, &field.moving(&state, 0.0)).abs() <= 1e-12 * spring {
@@ -260,10 +260,15 @@ impl<'a> Drive<'a> {
         self.input.map_or([0.0; 4], |input| input.piece(self.index).expanded(time - self.delay))
     }
 
-    /// Returns the torque at a time on the present piece.
-    pub(crate) fn torque(&self, time: f64) -> f64 {
-        let [value, ..] = self.raw(time);
-        self.gain * value
+    /// Returns the rate of the raw input at a time on the present piece, and its Taylor coefficients there.
+    pub(crate) fn raw_rate(&self, time: f64) -> Cubic {
+        self.input.map_or([0.0; 4], |input| input.piece(self.index).rate_expanded(time - self.delay))
+    }
+
+    /// Returns the torque at a time on the present piece, and its rate.
+    pub(crate) fn torque(&self, time: f64) -> [f64; 2] {
+        let ([value, ..], [rate, ..]) = (self.raw(time), self.raw_rate(time));
+        [self.gain * value, self.gain * rate]
     }
 
     pub(crate) fn advance(&mut self) {

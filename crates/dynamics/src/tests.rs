@@ -58,7 +58,7 @@ fn values(effect: SystemEffect) -> Values<f64> {
     }
 }
 
-/// A moment with one of its eleven variables shifted.
+/// A moment with one of its twelve variables shifted.
 fn moment<S: Scalar>(position: f64, velocity: f64, region: i8, shift: S, which: usize) -> Moment<S> {
     let number = |index: usize, value: f64| {
         let value = S::from(value);
@@ -69,6 +69,7 @@ fn moment<S: Scalar>(position: f64, velocity: f64, region: i8, shift: S, which: 
         position: number(1, position),
         velocity: number(2, velocity),
         input: number(3, 1.7),
+        input_rate: number(11, 0.8),
         hidden: [number(4, 0.3), number(5, -0.8)],
         nominal: Coefficients {
             inertia: number(6, 1.4),
@@ -89,7 +90,7 @@ fn duals_agree_with_the_complex_step_in_every_law() {
     const STEP: f64 = 1e-40;
     fn evaluate<S: Scalar>(effect: SystemEffect, state: (f64, f64, i8), shift: S, which: usize) -> [S; 3] {
         let mut own = values(effect).map(S::from);
-        if let Some(value) = which.checked_sub(11).and_then(|index| own.get_mut(index)) {
+        if let Some(value) = which.checked_sub(12).and_then(|index| own.get_mut(index)) {
             *value = *value + shift;
         }
         let at = moment(state.0, state.1, state.2, shift, which);
@@ -99,7 +100,7 @@ fn duals_agree_with_the_complex_step_in_every_law() {
     for &effect in SystemEffect::ALL {
         for region in -3..=3 {
             for (position, velocity) in [(0.5, 0.8), (-0.6, -1.2)] {
-                for which in 0..15 {
+                for which in 0..16 {
                     let state = (position, velocity, region);
                     let complex = evaluate(effect, state, Complex { re: 0.0, im: STEP }, which);
                     let dual = evaluate(effect, state, Dual::<1>::variable(0.0, 0), which);
@@ -134,9 +135,10 @@ fn dissipative_laws_take_energy_out_whatever_the_state() {
 #[test]
 fn the_signs_are_those_of_the_equations() {
     use SystemEffect::{
-        AsymmetricStiffness, Backlash, ConstantTorque, CoulombFriction, CubicStiffness, DampingDrift,
-        EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation, PeriodicForcing,
-        PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction, UnlistedDamping, UnlistedStiffness,
+        AsymmetricStiffness, Backlash, CommandDerivative, ConstantTorque, CoulombFriction, CubicStiffness,
+        DampingDrift, EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation,
+        PeriodicForcing, PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction, UnlistedDamping,
+        UnlistedStiffness,
     };
     let at = moment(0.5, 0.8, 0, 0.0, NONE);
     // Depth beyond the stop at 0.3.
@@ -164,6 +166,7 @@ fn the_signs_are_those_of_the_equations() {
         (UnlistedStiffness, 0, -0.7 * 0.4_f64.powi(5)),
         (PeriodicForcing, 0, 0.7 * (0.9 * 2.3 + 1.3_f64).sin()),
         (FlexibleCoupling, 0, 0.9 * (0.3 - 0.5) + 1.3 * (-0.8 - 0.8)),
+        (CommandDerivative, 0, 0.7 * 0.8),
         (InputDelay, 0, 0.0),
         (InputSaturation, 0, 0.0),
         (InputSaturation, 1, 0.7 - 1.7),

@@ -36,6 +36,10 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     if let Some(delay) = terms.delay {
         let _ = writeln!(text, "  parameter Real input_delay = {delay:?}; // s");
     }
+    if terms.use_the_drives_rate() {
+        let _ = writeln!(text, "  parameter Real input_step = {:?}; // s", 1.0 / repaired.rate_hz);
+        text.push_str("  Real drive_rate;\n");
+    }
     if repaired.driven() {
         text.push_str("  input Real u;\n");
     }
@@ -65,6 +69,9 @@ fn equations(text: &mut String, repaired: &Repaired, terms: &Terms) {
             (true, Some(_)) => "input_gain * delay(u, input_delay)",
         }
     );
+    if terms.use_the_drives_rate() {
+        text.push_str("  drive_rate = (drive - delay(drive, input_step)) / input_step;\n");
+    }
     text.push_str(
         "  inertia * der(velocity) = drive - damping * velocity - stiffness * (position - rest_angle)",
     );

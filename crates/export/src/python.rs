@@ -44,6 +44,13 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     if let Some(delay) = terms.delay {
         let _ = writeln!(text, "input_delay = {delay:?}  # s");
     }
+    if terms.use_the_drives_rate() {
+        let _ = writeln!(
+            text,
+            "input_step = {:?}  # s, from one sample of the input to the next",
+            1.0 / repaired.rate_hz
+        );
+    }
     text.push_str("\n\ndef sign(x):\n    return (x > 0) - (x < 0)\n\n\n");
     text
 }
@@ -61,6 +68,10 @@ fn derivative(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let arrival = if terms.delay.is_some() { "max(time - input_delay, 0.0)" } else { "time" };
     let drive = if repaired.driven() { format!("input_gain * u({arrival})") } else { "0.0".to_owned() };
     let _ = writeln!(text, "    drive = {drive}\n    torque = drive");
+    if terms.use_the_drives_rate() {
+        let before = drive.replace("u(", "u(-input_step + ");
+        let _ = writeln!(text, "    drive_rate = (drive - {before}) / input_step");
+    }
     for term in &terms.torques {
         let _ = writeln!(text, "    torque += {}  # {}", term.expression, term.title);
     }

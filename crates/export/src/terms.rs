@@ -70,6 +70,11 @@ impl Terms {
         terms
     }
 
+    /// Returns `true` if a torque needs the rate of the input's torque.
+    pub(crate) fn use_the_drives_rate(&self) -> bool {
+        self.torques.iter().any(|term| term.expression.contains("drive_rate"))
+    }
+
     fn add(&mut self, repaired: &Repaired, active: &Active, effect: dynamics::SystemEffect) {
         let (description, export) = (effect.description(), effect.export());
         for (parameter, value) in description.parameters.iter().zip(active.values()) {

@@ -11,7 +11,7 @@ use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
-use crate::model::candidates::{Along, padded};
+use crate::model::candidates::{Along, driven, padded};
 use crate::model::predictor::{Derivatives, Motion, Simulator};
 use dynamics::{Active, Coefficients, DynamicsError, Effect, Input, System, Values};
 use nalgebra::{DMatrix, Matrix2, Vector2};
@@ -58,8 +58,9 @@ impl Step {
 pub(crate) struct Path {
     pub(crate) times: Vec<f64>,
     pub(crate) motion: Motion,
-    /// Torque of the input at the samples.
+    /// Torque of the input at the samples, and its rate.
     pub(crate) input: Vec<f64>,
+    pub(crate) input_rate: Vec<f64>,
     /// ∂reading/∂(observed quantity).
     pub(crate) gain: Vec<f64>,
     /// Steps that propagate a small deviation from each sample to the next. A bending contact's hidden state
@@ -85,12 +86,7 @@ impl Path {
             let motion = simulator.motion(segment, start)?;
             let input = data.inputs.get(segment.record).and_then(Option::as_ref);
             let gain = system.nominal().input_gain();
-            let torque = segment
-                .times
-                .iter()
-                // Without an input there is no torque.
-                .map(|time| input.map_or(0.0, |input| gain * input.at(*time)))
-                .collect();
+            let [torque, torque_rate] = driven(input, gain, &segment.times);
             let (x, rate, _) = observed(data.quantity, &motion);
             // Every series has an entry for each sample.
             let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(0.0);
@@ -104,6 +100,7 @@ impl Path {
                 times: segment.times.clone(),
                 motion,
                 input: torque,
+                input_rate: torque_rate,
                 gain: slopes,
                 steps: Vec::new(),
                 stiffness: Vec::new(),
@@ -125,6 +122,7 @@ impl Path {
             times,
             motion,
             input: Vec::new(),
+            input_rate: Vec::new(),
             gain: Vec::new(),
             steps: Vec::new(),
             stiffness: Vec::new(),
@@ -195,6 +193,7 @@ impl Path {
             observed,
             rate,
             input: &self.input,
+            input_rate: &self.input_rate,
             command,
             first: self.first,
             facts,

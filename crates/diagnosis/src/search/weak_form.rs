@@ -16,7 +16,7 @@ use crate::fit::fitted::Fit;
 use crate::linear::dictionary::{Dictionary, Gain};
 use crate::matrices::solve;
 use crate::model::candidate::Candidate;
-use crate::model::candidates::Along;
+use crate::model::candidates::{Along, driven};
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::predictor::Motion;
 use crate::residual::floor;
@@ -290,7 +290,7 @@ impl Rows {
             .known
             .iter()
             .filter_map(|own| seen.torque(own.candidate, &own.candidate.values(&own.stated)));
-        let acting: Vec<Vec<f64>> = known.chain([seen.input.clone()]).collect();
+        let acting: Vec<Vec<f64>> = known.chain(seen.input.iter().take(1).cloned()).collect();
         let ones = vec![1.0; seen.run.times.len()];
         let period = TAU / seen.data.facts.frequency;
         let rest_angle = seen.nominal.rest_angle();
@@ -357,8 +357,8 @@ struct Seen<'s> {
     motion: &'s Motion,
     nominal: &'s Nominal,
     rest_is_free: bool,
-    /// Torque of the input.
-    input: Vec<f64>,
+    /// Torque of the input, and its rate.
+    input: [Vec<f64>; 2],
     command: Option<&'s Input>,
 }
 
@@ -370,10 +370,8 @@ impl<'s> Seen<'s> {
         rest_is_free: bool,
     ) -> Self {
         let command = data.inputs.get(run.record).and_then(Option::as_ref);
-        let gain = nominal.input_gain();
-        // Without an input there is no torque.
-        let input = run.times.iter().map(|time| command.map_or(0.0, |input| gain * input.at(*time)));
-        Self { data, run, motion, nominal, rest_is_free, input: input.collect(), command }
+        let input = driven(command, nominal.input_gain(), &run.times);
+        Self { data, run, motion, nominal, rest_is_free, input, command }
     }
 
     /// Returns the torques of an effect at the samples, one series for each column.
@@ -390,13 +388,15 @@ impl<'s> Seen<'s> {
     fn along<T>(&self, read: &dyn Fn(&Along<'_>) -> T) -> T {
         let coefficients = self.nominal.coefficients();
         let facts: &Scales = &self.data.facts;
+        let [input, input_rate] = &self.input;
         read(&Along {
             times: &self.run.times,
             position: &self.motion.position,
             velocity: &self.motion.velocity,
             observed: &self.motion.position,
             rate: &self.motion.velocity,
-            input: &self.input,
+            input,
+            input_rate,
             command: self.command,
             first: self.run.first,
             facts,

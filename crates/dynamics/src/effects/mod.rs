@@ -2,6 +2,7 @@
 
 mod asymmetric_stiffness;
 mod backlash;
+mod command_derivative;
 mod constant_torque;
 mod coulomb_friction;
 mod cubic_stiffness;
@@ -22,6 +23,7 @@ mod unlisted_stiffness;
 
 pub use asymmetric_stiffness::AsymmetricStiffness;
 pub use backlash::Backlash;
+pub use command_derivative::CommandDerivative;
 pub use constant_torque::ConstantTorque;
 pub use coulomb_friction::CoulombFriction;
 pub use cubic_stiffness::CubicStiffness;

@@ -89,7 +89,8 @@ impl Recorder {
         for (stage, (node, vector)) in gauss.nodes.iter().zip(&step.stages).enumerate() {
             let time = step.from + node * step.size;
             let state = state(time, vector, drive.torque(time));
-            let nominal = [field.damping(&state), state.input].into_iter();
+            let [input, _] = state.input;
+            let nominal = [field.damping(&state), input].into_iter();
             let effects =
                 field.moments(&state, mode).map(|(term, moment)| term.effect.torque(&term.values, &moment));
             let mut powers = [0.0; MOST_ACCOUNTS];

@@ -10,7 +10,7 @@ pub(crate) const LENGTH: usize = 2 + SYSTEM_HIDDEN;
 /// Position, velocity and hidden state; unused entries are zero.
 pub(crate) type Vector = [f64; LENGTH];
 
-pub(crate) fn state(time: f64, vector: &Vector, input: f64) -> State<f64> {
+pub(crate) fn state(time: f64, vector: &Vector, input: [f64; 2]) -> State<f64> {
     let [position, velocity, hidden @ ..] = *vector;
     State { time, position, velocity, hidden, input }
 }

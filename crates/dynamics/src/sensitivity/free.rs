@@ -1,6 +1,6 @@
 //! Free quantities and their storage.
 
-use super::graph::{EFFECTS, INPUT, NOMINAL};
+use super::graph::{EFFECTS, INPUT, INPUT_RATE, NOMINAL};
 use crate::error::DynamicsError;
 use crate::field::SYSTEM_HIDDEN;
 use crate::law::MOST_PARAMETERS;
@@ -51,7 +51,7 @@ impl Place {
     pub(crate) fn influences(self, leaf: usize) -> bool {
         match self {
             Self::Leaf(own) => own == leaf,
-            Self::Delay(_) => leaf == INPUT,
+            Self::Delay(_) => leaf == INPUT || leaf == INPUT_RATE,
             Self::Start(_) => false,
         }
     }

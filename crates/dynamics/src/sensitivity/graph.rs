@@ -9,7 +9,7 @@ use crate::field::{Field, Mode, SYSTEM_HIDDEN, State, Term};
 use crate::law::MOST_PARAMETERS;
 use crate::nominal::Coefficients;
 
-/// Numbers of the leaves: time, state, raw input, nominal coefficients, then [`MOST_PARAMETERS`] for each
+/// Numbers of the leaves: time, state, raw input and its rate, nominal coefficients, then [`MOST_PARAMETERS`] for each
 /// effect.
 pub(crate) const TIME: usize = 0;
 /// Leaf of the position, followed by velocity and hidden state.
@@ -18,8 +18,10 @@ pub(crate) const STATE: usize = 1;
 pub(crate) const MOST_STATES: usize = 2 + SYSTEM_HIDDEN;
 /// Leaf of the input before the gain.
 pub(crate) const INPUT: usize = STATE + MOST_STATES;
+/// Leaf of the input's rate before the gain.
+pub(crate) const INPUT_RATE: usize = INPUT + 1;
 /// Leaf of the inertia, followed by damping, stiffness, rest angle and input gain.
-pub(crate) const NOMINAL: usize = INPUT + 1;
+pub(crate) const NOMINAL: usize = INPUT_RATE + 1;
 /// Leaf of the first effect's first parameter.
 pub(crate) const EFFECTS: usize = NOMINAL + 5;
 
@@ -69,7 +71,7 @@ impl Graph {
             position,
             velocity,
             hidden: std::array::from_fn(|index| leaf(STATE + 2 + index)),
-            input: nominal.input_gain * leaf(INPUT),
+            input: [nominal.input_gain * leaf(INPUT), nominal.input_gain * leaf(INPUT_RATE)],
         };
         let (acceleration, hidden) = written.rates(&state, mode);
         let rates: Vec<usize> = [velocity, acceleration]

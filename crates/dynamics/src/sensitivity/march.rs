@@ -3,13 +3,13 @@
 use super::columns::Coupling;
 use super::expansion::expand;
 use super::free::Place;
-use super::graph::{INPUT, MOST_STATES, STATE, TIME};
+use super::graph::{INPUT, INPUT_RATE, MOST_STATES, STATE, TIME};
 use super::model::Model;
 use super::response::{FullState, Response};
 use super::series::{LENGTH, Series, head, slope, value};
 use crate::error::DynamicsError;
 use crate::field::{Mode, SYSTEM_HIDDEN, State};
-use crate::input::Input;
+use crate::input::{Cubic, Input};
 use crate::system::{Drive, Start};
 use std::ops::Range;
 
@@ -215,13 +215,14 @@ impl<'a> March<'a> {
         let number = self.model.piece(&self.mode);
         debug_assert!(number < self.model.graphs.len(), "the piece was just found or written down");
         let room = (self.drive.until().min(self.end) - self.time).max(0.0);
-        let raw = self.drive.raw(self.time);
+        let (raw, raw_rate) = (self.drive.raw(self.time), self.drive.raw_rate(self.time));
         let Model { graphs, states, settings, .. } = &mut *self.model;
         let Some(piece) = graphs.get_mut(number) else { return Ok(()) };
         let graph = &mut piece.graph;
         let (states, most) = (*states, settings.degree);
         graph.set_leaf(TIME, &[self.time, 1.0]);
         graph.set_leaf(INPUT, &raw);
+        graph.set_leaf(INPUT_RATE, &raw_rate);
         for (variable, &value) in self.state.iter().enumerate().take(states) {
             graph.set_leaf(STATE + variable, &[value]);
         }
@@ -278,8 +279,11 @@ impl<'a> March<'a> {
         let Some(piece) = graphs.get_mut(number) else { return };
         let graph = &mut piece.graph;
         couplings.clear();
-        let [_, slope, second, third] = self.drive.raw(self.time);
-        let slopes = [slope, 2.0 * second, 3.0 * third];
+        let slopes = |[_, slope, second, third]: Cubic| [slope, 2.0 * second, 3.0 * third];
+        let delayed = [
+            (INPUT, slopes(self.drive.raw(self.time))),
+            (INPUT_RATE, slopes(self.drive.raw_rate(self.time))),
+        ];
         let mut links = [None; MOST_STATES];
         for (rate, link) in links.iter_mut().enumerate().take(*states) {
             let Some(node) = graph.rates.get(rate).copied() else { continue };
@@ -304,10 +308,12 @@ impl<'a> March<'a> {
                 match *place {
                     Place::Leaf(leaf) => columns.add_source(column, rate, graph.derivative(leaf), 1.0, 0),
                     Place::Delay(_) => {
-                        let by_input = graph.derivative(INPUT);
-                        for (from, slope) in slopes.into_iter().enumerate().take(degree) {
-                            let kept = by_input.len().min(degree - from);
-                            columns.add_source(column, rate, head(by_input, kept), -slope, from);
+                        for (leaf, slopes) in delayed {
+                            let by_input = graph.derivative(leaf);
+                            for (from, slope) in slopes.into_iter().enumerate().take(degree) {
+                                let kept = by_input.len().min(degree - from);
+                                columns.add_source(column, rate, head(by_input, kept), -slope, from);
+                            }
                         }
                     }
                     Place::Start(_) => {}

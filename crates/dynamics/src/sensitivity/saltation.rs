@@ -1,7 +1,7 @@
 //! Passage to the next piece: the jump of the columns at an event.
 
 use super::free::Place;
-use super::graph::{INPUT, STATE, TIME};
+use super::graph::{INPUT, INPUT_RATE, STATE, TIME};
 use super::march::March;
 use super::model::Model;
 use crate::edges::Edge;
@@ -58,13 +58,15 @@ impl March<'_> {
     fn shift(&mut self, edge: Edge, number: usize) {
         let point = self.point();
         let raw = self.drive.raw(self.time);
-        let [_, slope, ..] = raw;
+        let raw_rate = self.drive.raw_rate(self.time);
+        let ([_, slope, ..], [_, curvature, ..]) = (raw, raw_rate);
         let Model { graphs, states, free, columns, shifts, .. } = &mut *self.model;
         let Some(piece) = graphs.get_mut(number) else { return };
         let graph = &mut piece.graph;
         let Some(&(_, node)) = graph.edges.iter().find(|(other, _)| *other == edge) else { return };
         graph.set_leaf(TIME, &[point.time, 1.0]);
         graph.set_leaf(INPUT, &raw);
+        graph.set_leaf(INPUT_RATE, &raw_rate);
         for (variable, &value) in self.state.iter().enumerate().take(*states) {
             graph.set_leaf(STATE + variable, &[value]);
         }
@@ -85,7 +87,7 @@ impl March<'_> {
                 (0..*states).map(|state| partial(STATE + state) * columns.first(column, state)).sum();
             moved += match *place {
                 Place::Leaf(leaf) => partial(leaf),
-                Place::Delay(_) => -slope * partial(INPUT),
+                Place::Delay(_) => -slope * partial(INPUT) - curvature * partial(INPUT_RATE),
                 Place::Start(_) => 0.0,
             };
             // An edge that is only touched has no side to be shifted to.

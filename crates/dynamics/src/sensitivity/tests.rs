@@ -13,7 +13,7 @@ fn trajectories_are_the_references_for_every_effect() {
     let settings = Settings { velocity: true, acceleration: true, ..Settings::default() };
     for case in CASES {
         for hold in [Hold::Zero, Hold::Linear] {
-            let driven = case.0.starts_with("input");
+            let driven = crate::Effect::find(case.0).unwrap().description().driven_only;
             if !driven && hold == Hold::Linear {
                 continue;
             }
@@ -199,7 +199,7 @@ fn columns_are_the_derivatives_for_every_effect_through_its_events() {
     let times = grid(2.0, 130.0);
     let start = Start { position: 0.6, velocity: 2.0 };
     for case in CASES {
-        let driven = case.0.starts_with("input");
+        let driven = crate::Effect::find(case.0).unwrap().description().driven_only;
         let linear = || command(2.0, Hold::Linear);
         let inputs = [command(2.0, Hold::Zero), linear(), linear().thinned(5)].map(Some);
         for input in if driven { &inputs[..] } else { &[None] } {

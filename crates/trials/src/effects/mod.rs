@@ -14,6 +14,7 @@ mod asymmetric_stiffness;
 mod backlash;
 mod bristles;
 mod clock_drift;
+mod command_derivative;
 mod constant_torque;
 mod coulomb_friction;
 mod cubic_stiffness;
@@ -67,6 +68,7 @@ pub(crate) static REGISTRY: &[TrialEffect] = &[
     flexible_coupling::EFFECT,
     input_delay::EFFECT,
     input_saturation::EFFECT,
+    command_derivative::EFFECT,
     sensor_lag::EFFECT,
     sensor_nonlinearity::EFFECT,
     sensor_drift::EFFECT,

@@ -84,6 +84,7 @@ impl Restoring {
                     position: amplitude * sine,
                     velocity: self.velocity(amplitude, amplitude * sine),
                     input: 0.0,
+                    input_rate: 0.0,
                     hidden: [0.0; dynamics::MOST_HIDDEN],
                     nominal,
                     direction: 1.0,

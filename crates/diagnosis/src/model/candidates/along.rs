@@ -15,8 +15,9 @@ pub(crate) struct Along<'a> {
     /// Observed quantity and its time derivative; the derivative is empty for accelerations.
     pub(crate) observed: &'a [f64],
     pub(crate) rate: &'a [f64],
-    /// Torque of the input.
+    /// Torque of the input, and its rate.
     pub(crate) input: &'a [f64],
+    pub(crate) input_rate: &'a [f64],
     /// Input itself; `None` for a free swing.
     pub(crate) command: Option<&'a Input>,
     /// `true` if the segment is at the start of the record.
@@ -50,6 +51,7 @@ impl Along<'_> {
             position: at(self.position),
             velocity,
             input: at(self.input),
+            input_rate: at(self.input_rate),
             hidden: [0.0; MOST_HIDDEN],
             nominal: *self.nominal,
             direction: if velocity < 0.0 { -1.0 } else { 1.0 },
@@ -85,6 +87,16 @@ pub(crate) struct Mode {
     pub(crate) inertia: Option<f64>,
     /// Decrease of the squares that the mode would bring.
     pub(crate) gain: f64,
+}
+
+/// Returns the torque of an input at some times, and its rate; zeros without an input. `gain` is the torque per unit of
+/// the input.
+pub(crate) fn driven(input: Option<&Input>, gain: f64, times: &[f64]) -> [Vec<f64>; 2] {
+    let along = |of: fn(&Input, f64) -> f64| {
+        // Without an input there is no torque.
+        times.iter().map(|time| input.map_or(0.0, |input| gain * of(input, *time))).collect()
+    };
+    [along(Input::at), along(Input::rate_at)]
 }
 
 /// Pads an effect's values to the length that laws take.

@@ -260,6 +260,7 @@ fn differentiated(moment: &Moment<f64>, region: i8) -> Moment<Dual<2>> {
         position: Dual::variable(moment.position, 0),
         velocity: Dual::variable(moment.velocity, 1),
         input: constant(moment.input),
+        input_rate: constant(moment.input_rate),
         hidden: moment.hidden.map(constant),
         nominal: Coefficients {
             inertia: constant(c.inertia),

@@ -31,6 +31,7 @@ mod along;
 pub(crate) mod asymmetric_stiffness;
 pub(crate) mod backlash;
 pub(crate) mod clock_drift;
+pub(crate) mod command_derivative;
 pub(crate) mod constant_torque;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
@@ -60,7 +61,7 @@ mod unlisted_damping;
 mod unlisted_stiffness;
 
 use crate::model::candidate::Candidate;
-pub(crate) use along::{Along, Lines, Mode, padded};
+pub(crate) use along::{Along, Lines, Mode, driven, padded};
 pub(crate) use evidence_class::EvidenceClass;
 pub(crate) use law::{CandidateLaw, grid, secant};
 pub(crate) use main_mode::MainMode;
@@ -87,6 +88,7 @@ pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&flexible_coupling::FlexibleCoupling),
     Candidate::new(&input_delay::InputDelay),
     Candidate::new(&input_saturation::InputSaturation),
+    Candidate::new(&command_derivative::CommandDerivative),
     Candidate::new(&constant_torque::ConstantTorque),
     Candidate::new(&sensor_saturation::SensorSaturation),
     Candidate::new(&sensor_lag::SensorLag),
