@@ -64,7 +64,8 @@ impl Sought {
         request: &Request<'_>,
         watch: &mut Stopwatch<'_>,
     ) -> Result<Self, DiagnosisError> {
-        let Some(hold) = self.question.other_hold() else { return Ok(self) };
+        let other = self.question.other_hold().filter(|_| request.settings.hold.is_none());
+        let Some(hold) = other else { return Ok(self) };
         let other = Question::of(request, &self.measured, Some(hold))?;
         let Some(known) = self.searched.better_on(&self.question, &other) else { return Ok(self) };
         let searched = Searched::of(request, &other, self.measured.is_whole, Some(known));
@@ -122,7 +123,7 @@ pub fn diagnose_watched(
     let mut clocks = ClockRates::as_stamped(records);
     let request = Request { records, simulator, settings };
     let mut sought =
-        Sought::of(&request, None, None, &mut watch)?.with_the_better_hold(&request, &mut watch)?;
+        Sought::of(&request, settings.hold, None, &mut watch)?.with_the_better_hold(&request, &mut watch)?;
     for _ in 0..CORRECTIONS {
         let Some((corrected, set)) = sought.clocks_corrected(&clocks) else { break };
         let request = Request { records: &corrected.records, simulator, settings };

@@ -1,5 +1,6 @@
 //! Settings of a diagnosis.
 
+use dynamics::Hold;
 use seed::Seed;
 
 /// Settings of a diagnosis.
@@ -13,6 +14,8 @@ pub struct Settings {
     /// Ids of effects that are not considered, for callers who know that an effect is absent, and for trials
     /// in which the cause has no name.
     pub without: Vec<String>,
+    /// Behavior of the inputs between their samples, if it is known; otherwise the records decide.
+    pub hold: Option<Hold>,
     /// Seed of all random draws: the bootstraps and the null distribution.
     pub seed: Seed,
 }
@@ -25,6 +28,6 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { false_alarm: 0.01, most_effects: 5, without: Vec::new(), seed: Seed::new(0) }
+        Self { false_alarm: 0.01, most_effects: 5, without: Vec::new(), hold: None, seed: Seed::new(0) }
     }
 }

@@ -35,6 +35,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod active;
+mod actuator;
 pub mod chain;
 mod description;
 mod edges;
@@ -65,6 +66,7 @@ mod units;
 pub mod weak_form;
 
 pub use active::Active;
+pub use actuator::{Actuator, Command, Stated};
 pub use description::{Class, Description, Kind, Parameter, Range};
 pub use error::DynamicsError;
 pub use export::{Export, Joint, StateExport};

@@ -5,6 +5,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod actuator;
 mod experiment;
 mod json_schema;
 mod learning;
@@ -17,6 +18,7 @@ pub mod sweep;
 #[cfg(test)]
 mod tests;
 
+pub use actuator::ACTUATOR;
 pub use experiment::{
     CheckpointSettings, Claims, Comparison, DataSettings, Experiment, FitSettings, Single, Task, resolve,
 };
@@ -24,7 +26,9 @@ pub use json_schema::{compare_schema, estimate_schema, predict_schema};
 pub use learning::{
     LearnSettings, LearnSource, LearnStudy, LearningProblem, is_learning, learn_schema, resolve_learning,
 };
-pub use nominal::{KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, StatedNominal, resolve_nominal};
+pub use nominal::{
+    KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, Servo, StatedNominal, resolve_nominal,
+};
 pub use pipelines::{EnvelopeSettings, Pipeline, envelope_by_default};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,

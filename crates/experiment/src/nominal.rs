@@ -6,9 +6,10 @@
 //! that a table `[input]` marks the system as driven. A repaired simulator can therefore be read as a nominal
 //! one without changes.
 
+use crate::actuator;
 use dynamics::{
-    Active, Coefficients, Coordinate, DynamicsError, Effect, KnownEffect, Nominal, NominalSimulator,
-    REGISTRY, Units,
+    Active, Actuator, Coefficients, Coordinate, DynamicsError, Effect, KnownEffect, Nominal,
+    NominalSimulator, REGISTRY, Units,
 };
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
@@ -23,6 +24,24 @@ pub struct StatedNominal {
     pub simulator: NominalSimulator,
     /// `true` if the file mentions an input; the records must then have one.
     pub driven: bool,
+    /// Inner loop of a servo joint, with the joint alone; `nominal` and `simulator` are the joint with the loop.
+    pub actuator: Option<Servo>,
+}
+
+/// Joint with an inner loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Servo {
+    /// The loop.
+    pub actuator: Actuator,
+    /// The joint without it.
+    pub joint: NominalSimulator,
+}
+
+impl From<NominalSimulator> for StatedNominal {
+    /// A simulator without an input.
+    fn from(simulator: NominalSimulator) -> Self {
+        Self { nominal: *simulator.nominal(), simulator, driven: false, actuator: None }
+    }
 }
 
 impl StatedNominal {
@@ -31,10 +50,14 @@ impl StatedNominal {
     /// # Errors
     /// [`DynamicsError`] for a gain that is not finite.
     pub fn driven_by(self, input_gain: f64) -> Result<Self, DynamicsError> {
+        if let Some(Servo { actuator, joint }) = &self.actuator {
+            let simulator = actuator.drive(joint, input_gain)?;
+            return Ok(Self { nominal: *simulator.nominal(), simulator, driven: true, ..self });
+        }
         let coefficients = Coefficients { input_gain, ..self.nominal.coefficients() };
         let nominal = self.nominal.with_coefficients(coefficients)?;
         let simulator = NominalSimulator::new(nominal, self.simulator.effects().to_vec())?;
-        Ok(Self { nominal, simulator, driven: true })
+        Ok(Self { nominal, simulator, driven: true, actuator: None })
     }
 }
 
@@ -48,7 +71,7 @@ struct Keys {
     natural_frequency: Option<f64>,
     natural_frequency_rad_s: Option<f64>,
     period: Option<f64>,
-    rest_angle: Option<f64>,
+    rest_angle: f64,
     input_gain: f64,
     sensor_resolution: Option<f64>,
 }
@@ -142,7 +165,8 @@ const FIELDS: &[Field] = &[
     Field {
         key: "rest_angle",
         unit: "rad or m",
-        meaning: "Where the spring is relaxed; 0 by default beside a frequency or a period.",
+        default: Default::Float(0.0),
+        meaning: "Where the spring is relaxed.",
         ..NUMBER
     },
     Field {
@@ -224,10 +248,13 @@ pub fn resolve_nominal(document: &Document) -> Result<StatedNominal, SettingsErr
         vec![Section { name: "", fields: OF_SIMULATION }, Section { name: table, fields: NOMINAL.fields }];
     sections.extend(effects.iter().map(|(table, _)| Section { name: table, fields: EFFECT }));
     sections.extend(parameters.iter().map(|(table, fields)| Section { name: table, fields }));
+    let has_loop = !inside && actuator::is_stated(&own);
+    let loops = if has_loop { actuator::sections(&own) } else { Vec::new() };
+    sections.extend(loops.iter().map(|(table, fields)| Section { name: table, fields }));
     let resolved = Resolved::new(&own, &sections)?;
     let refused = |problem: String| SettingsError::Refused { file: document.file().to_owned(), problem };
     let keys: Keys = resolved.section(table)?;
-    let nominal = nominal(&own, table, &keys)?;
+    let nominal = nominal(&own, table, &keys, has_loop)?;
     let known = effects.iter().zip(&parameters).map(|((table, effect), (parameters, _))| {
         let EffectKeys { recalibrate } = resolved.section(table)?;
         let keys = effect.description().parameters.iter().map(|parameter| dotted(parameters, parameter.name));
@@ -237,7 +264,17 @@ pub fn resolve_nominal(document: &Document) -> Result<StatedNominal, SettingsErr
     });
     let known = known.collect::<Result<_, SettingsError>>()?;
     let simulator = NominalSimulator::new(nominal, known).map_err(|error| refused(error.to_string()))?;
-    Ok(StatedNominal { nominal, simulator, driven })
+    if !has_loop {
+        return Ok(StatedNominal { nominal, simulator, driven, actuator: None });
+    }
+    let actuator = actuator::actuator(&own, &resolved)?;
+    let gain = actuator.gain();
+    // Until the records have told an unknown gain, any number stands in for it.
+    let driven =
+        actuator.drive(&simulator, gain.unwrap_or(1.0)).map_err(|error| refused(error.to_string()))?;
+    let servo = Servo { actuator, joint: simulator };
+    let nominal = *driven.nominal();
+    Ok(StatedNominal { nominal, simulator: driven, driven: gain.is_some(), actuator: Some(servo) })
 }
 
 fn dotted(table: &str, key: &str) -> String {
@@ -327,9 +364,14 @@ fn one_of<const N: usize>(
     }
 }
 
-fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, SettingsError> {
-    let by_damping = one_of(document, table, &NOMINAL_DECAYS)? == "damping";
-    let by_stiffness = one_of(document, table, &NOMINAL_SWINGS)? == "stiffness";
+/// Builds the oscillator. Beside an actuator, damping and stiffness are the joint's own, and 0 where they are not
+/// stated.
+fn nominal(document: &Document, table: &str, keys: &Keys, has_loop: bool) -> Result<Nominal, SettingsError> {
+    let none_of =
+        |keys: &[&str]| has_loop && keys.iter().all(|key| document.get(&dotted(table, key)).is_none());
+    let (undamped, springless) = (none_of(&NOMINAL_DECAYS), none_of(&NOMINAL_SWINGS));
+    let by_damping = undamped || one_of(document, table, &NOMINAL_DECAYS)? == "damping";
+    let by_stiffness = springless || one_of(document, table, &NOMINAL_SWINGS)? == "stiffness";
     let missing = |key: &str| {
         let field = FIELDS.iter().find(|field| field.key == key);
         SettingsError::Missing {
@@ -348,8 +390,12 @@ fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, Set
     let inertia = given(keys.inertia, "inertia", 1.0)?;
     let omega = keys.natural_frequency_rad_s.or(keys.natural_frequency.map(|frequency| TAU * frequency));
     let omega = omega.or(keys.period.map(|period| TAU / period));
-    let stiffness =
-        keys.stiffness.or(omega.map(|omega| inertia * omega * omega)).ok_or_else(|| missing("stiffness"))?;
+    let absent = |is_absent: bool| is_absent.then_some(0.0);
+    let stiffness = keys
+        .stiffness
+        .or(absent(springless))
+        .or(omega.map(|omega| inertia * omega * omega))
+        .ok_or_else(|| missing("stiffness"))?;
     if !by_damping && stiffness == 0.0 {
         let leaf = document.get(&dotted(table, "damping_ratio"));
         let found = leaf.map_or_else(String::new, |leaf| leaf.value.to_string());
@@ -360,10 +406,10 @@ fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, Set
     let critical = 2.0 * (stiffness * inertia).sqrt();
     let damping = keys
         .damping
+        .or(absent(undamped))
         .or(keys.damping_ratio.map(|ratio| ratio * critical))
         .ok_or_else(|| missing("damping"))?;
-    let rest_angle = given(keys.rest_angle, "rest_angle", 0.0)?;
-    let input_gain = keys.input_gain;
+    let Keys { rest_angle, input_gain, .. } = *keys;
     let made =
         Nominal::from_coefficients(Coefficients { inertia, damping, stiffness, rest_angle, input_gain })
             .map(|nominal| nominal.with_coordinate(keys.coordinate))

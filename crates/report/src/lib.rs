@@ -13,6 +13,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod actuator;
 mod classes;
 mod comparison;
 mod diagnosis;
@@ -43,6 +44,7 @@ mod whole;
 #[cfg(test)]
 mod sample;
 
+pub use actuator::actuator_sentence;
 pub use classes::{
     ClassStatement, Standing, class_statements, class_title, is_calibrated_already, listed, nameless_share,
     unlikely_classes, verdict_sentence,

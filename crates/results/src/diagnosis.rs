@@ -2,6 +2,7 @@
 //!
 //! A number that is not finite is written as `null` and read back as NaN.
 
+use super::actuator::ActuatorRow;
 use super::calibration::Calibration;
 use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
 use super::modes::ModeRow;
@@ -50,6 +51,9 @@ pub struct DiagnosisResult {
     /// Modes of the first record that shows several, the most powerful first; empty if none does.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub modes: Vec<ModeRow>,
+    /// Inner loop of a joint; absent unless the nominal simulator states one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actuator: Option<ActuatorRow>,
     /// Diagnosed records, in the order given.
     pub records: Vec<RecordRow>,
     /// Path of the nominal simulator's file.

@@ -6,6 +6,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod actuator;
 mod batch;
 mod calibration;
 mod comparison;
@@ -26,6 +27,7 @@ mod simulation;
 mod sweep;
 mod trials;
 
+pub use actuator::{ActuatorRow, GainRow, RatioRow};
 pub use batch::{BatchResult, CASE_SCHEMA, CaseFile, FailedCase};
 pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
 pub use comparison::{

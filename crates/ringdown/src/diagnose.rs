@@ -52,6 +52,7 @@ impl DiagnosisOptions {
             false_alarm: self.false_alarm,
             most_effects: self.most_effects,
             without: self.without.clone(),
+            hold: None,
             seed: Seed::new(self.seed),
         })
     }

@@ -166,7 +166,7 @@ impl Nominal {
     }
 
     fn of(simulator: NominalSimulator, driven: bool) -> Result<Self, Error> {
-        let stated = StatedNominal { nominal: *simulator.nominal(), simulator, driven };
+        let stated = StatedNominal { driven, ..StatedNominal::from(simulator) };
         Ok(Self { stated, name: "nominal".to_owned() })
     }
 }

@@ -45,6 +45,16 @@ pub enum WorkflowError {
         /// Columns of the record.
         columns: String,
     },
+    /// The gain of an inner loop is unknown, and a record does not tell where to begin.
+    #[error(
+        "{file}: the gain of [actuator] is \"unknown\", and no command of this record explains its motion well enough to \
+         begin from; name the command's column with --input, or state a guess, such as proportional = {{ value = 8.0, \
+         tolerance = 6.0 }}"
+    )]
+    UnknownGain {
+        /// Name of the record.
+        file: String,
+    },
     /// The record has a unit that the nominal coordinate cannot have.
     #[error(
         "{file}: the record is in {found}, the nominal simulator's coordinate asks for {expected}; name the column \

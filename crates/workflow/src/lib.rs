@@ -17,6 +17,7 @@
     )
 )]
 
+mod actuator;
 mod error;
 pub mod guess;
 pub mod learning;

@@ -52,7 +52,7 @@ const DRIVES: f64 = 10.0;
 /// Returns the gain of an input that a simulator does not state and a record follows, with a sentence; `None` if the
 /// reading names an input or none, or if the record follows none.
 fn gain_of(record: &Path, stated: &StatedNominal, reading: &Reading) -> Option<(f64, String)> {
-    if reading.options.columns.input.is_some() {
+    if reading.options.columns.input.is_some() && stated.actuator.is_none() {
         return None;
     }
     let log = logs(record).ok()?.into_iter().next()?;
@@ -65,6 +65,13 @@ fn gain_of(record: &Path, stated: &StatedNominal, reading: &Reading) -> Option<(
     let gain = gain.value * stated.nominal.inertia();
     let column = loaded.source.reading.input.map(|input| input.column)?;
     let told = format!("{gain:.4e}").parse::<f64>().unwrap_or(gain);
+    if stated.actuator.is_some() {
+        let text = format!(
+            "the gain of the loop is unknown: beside the stated inertia, `{column}` and the motion tell about {told}, \
+             where its calibration begins"
+        );
+        return (gain > 0.0).then_some((gain, text));
+    }
     Some((
         gain,
         format!(
@@ -102,6 +109,10 @@ impl Question {
             Some(first) if !stated.driven => gain_of(first, &stated, reading),
             _ => None,
         };
+        if let (Some(_), false, None, Some(first)) = (&stated.actuator, stated.driven, &gain, records.first())
+        {
+            return Err(WorkflowError::UnknownGain { file: first.display().to_string() });
+        }
         let stated = match &gain {
             Some((gain, _)) => stated.driven_by(*gain).map_err(|error| WorkflowError::Nominal {
                 file: nominal.display().to_string(),
@@ -166,6 +177,8 @@ impl Question {
         let observations: Vec<Observations> =
             self.given.iter().map(|given| given.observations.clone()).collect();
         let stopwatch = || start.elapsed().as_secs_f64();
+        let hold = self.stated.actuator.as_ref().and_then(|servo| servo.actuator.hold);
+        let settings = &Settings { hold: settings.hold.or(hold), ..settings.clone() };
         let found =
             diagnosis::diagnose_watched(&observations, &self.stated.simulator, settings, &stopwatch, goes_on)
                 .map_err(|source| self.refused(source))?;
@@ -180,6 +193,7 @@ impl Question {
             seed,
             seconds,
             repaired: &repaired,
+            actuator: self.stated.actuator.as_ref(),
         };
         let result = result(&found, &beside);
         Ok(Answer { found, repaired, result })

@@ -1,11 +1,13 @@
 //! Stored form of a diagnosis, for files and scripts.
 
+use crate::actuator;
 use crate::read::Given;
 use diagnosis::{
     Calibrated, Cell, Diagnosis, EffectClass, Interval, KnownRow, ParameterEstimate, Series, Status, Swing,
     backbone, surface,
 };
 use dynamics::{Effect, Quantity, Units};
+use experiment::Servo;
 use export::{Repaired, equation_latex, equation_text};
 use results::{
     Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
@@ -23,6 +25,8 @@ pub(crate) struct Beside<'a> {
     pub(crate) seed: u64,
     pub(crate) seconds: f64,
     pub(crate) repaired: &'a Repaired,
+    /// Inner loop of a joint.
+    pub(crate) actuator: Option<&'a Servo>,
 }
 
 /// Builds the content of `diagnosis.json`.
@@ -54,6 +58,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             .find(|modes| !modes.is_empty())
             .cloned()
             .unwrap_or_default(), // Empty unless a record shows several.
+        actuator: None,
         records: beside.given.iter().map(|given| given.row.clone()).collect(),
         nominal: beside.nominal.to_owned(),
         nominal_digest: beside.nominal_digest.to_owned(),
@@ -79,6 +84,9 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         backbone: if beside.repaired.driven() { Backbone::default() } else { backbones(&found.series) },
         surface: surface_cells(found, quantity),
     };
+    if let Some(servo) = beside.actuator {
+        actuator::add(&mut result, servo, beside.repaired.system.nominal().input_gain());
+    }
     result.verdict.summary = report::verdict_sentence(&result);
     result
 }

@@ -164,6 +164,7 @@ impl DiagnoseArguments {
             false_alarm: self.false_alarm,
             most_effects: self.most_effects.map_or(Settings::default().most_effects, usize::from),
             without: self.without.clone(),
+            hold: None,
             seed: Seed::new(self.seed),
         }
     }

@@ -15,6 +15,7 @@ pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
         gap(result),
         apart(result),
         whereabouts(result),
+        report::actuator_sentence(result),
         report::modes_sentence(&result.modes),
         calibration(result),
         chain(result),

@@ -1,0 +1,225 @@
+//! `[actuator]` of a `nominal.toml`: the inner loop of a joint.
+
+use dynamics::{Actuator, Command, Hold, Stated};
+use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError};
+
+/// Table of the inner loop.
+pub(crate) const TABLE: &str = "actuator";
+
+const PLAIN: Field = Field {
+    key: "",
+    kind: Kind::Float { min: 0.0, max: f64::MAX },
+    default: Default::Absent,
+    unit: "",
+    meaning: "",
+    source: "",
+};
+const ABOVE_ZERO: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
+
+/// Keys of `[actuator]`.
+pub const ACTUATOR: Section<'static> = Section { name: TABLE, fields: FIELDS };
+
+/// Numbers that may be known, known within a tolerance, or unknown.
+const STATED: [&str; 3] = ["proportional", "derivative", "delay"];
+
+const FIELDS: &[Field] = &[
+    Field {
+        key: "kind",
+        kind: Kind::Choice(&["position", "velocity", "torque"]),
+        default: Default::Required,
+        meaning: "Quantity that is commanded.",
+        ..PLAIN
+    },
+    Field {
+        key: "proportional",
+        kind: ABOVE_ZERO,
+        unit: "N m/rad",
+        meaning: "Gain of the position error: a number, { value = …, tolerance = … }, or \"unknown\".",
+        ..PLAIN
+    },
+    Field {
+        key: "derivative",
+        unit: "N m s/rad",
+        meaning: "Gain of the velocity, stated like proportional.",
+        ..PLAIN
+    },
+    Field {
+        key: "derivative_on",
+        kind: Kind::Choice(&["measurement", "error"]),
+        default: Default::Text("measurement"),
+        meaning: "What the loop differentiates: the measured motion alone, or its error and so the command.",
+        ..PLAIN
+    },
+    Field {
+        key: "integral",
+        kind: Kind::Float { min: 0.0, max: 0.0 },
+        default: Default::Float(0.0),
+        unit: "N m/(rad s)",
+        meaning: "Gain of the integrated error; a loop with one cannot be simulated yet.",
+        ..PLAIN
+    },
+    Field {
+        key: "delay",
+        unit: "s",
+        meaning: "Time from a command to its action, stated like proportional; 0 by default.",
+        ..PLAIN
+    },
+    Field {
+        key: "hold",
+        kind: Kind::Choice(&["zero-order", "linear"]),
+        meaning: "Command between its samples; without it the records decide.",
+        ..PLAIN
+    },
+    Field {
+        key: "torque_limit",
+        kind: ABOVE_ZERO,
+        unit: "N m",
+        meaning: "Largest torque of the drive.",
+        ..PLAIN
+    },
+    Field {
+        key: "no_load_speed",
+        kind: ABOVE_ZERO,
+        unit: "rad/s",
+        meaning: "Speed at which the largest torque has fallen to 0.",
+        ..PLAIN
+    },
+    Field {
+        key: "dead_band",
+        kind: ABOVE_ZERO,
+        unit: "rad",
+        meaning: "Half the width of the position errors that cause no torque.",
+        ..PLAIN
+    },
+    Field {
+        key: "gear_ratio",
+        kind: ABOVE_ZERO,
+        default: Default::Float(1.0),
+        unit: "1",
+        meaning: "Turns of the rotor for one of the joint.",
+        ..PLAIN
+    },
+    Field {
+        key: "rotor_inertia",
+        default: Default::Float(0.0),
+        unit: "kg m^2",
+        meaning: "Inertia of the rotor about its own axis.",
+        ..PLAIN
+    },
+];
+
+const TOLERANT: &[Field] = &[
+    Field { key: "value", default: Default::Required, meaning: "Most probable value.", ..PLAIN },
+    Field {
+        key: "tolerance",
+        kind: ABOVE_ZERO,
+        default: Default::Required,
+        meaning: "Half the width of its 95 % interval.",
+        ..PLAIN
+    },
+];
+
+const UNKNOWN: Kind = Kind::Choice(&["unknown"]);
+
+/// Form in which a document states a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Absent,
+    Number,
+    Word,
+    Tolerant,
+}
+
+fn form(document: &Document, key: &str) -> Form {
+    let dotted = format!("{TABLE}.{key}");
+    match document.get(&dotted) {
+        Some(leaf) if leaf.value.is_str() => Form::Word,
+        Some(_) => Form::Number,
+        None if document.leaves().iter().any(|leaf| leaf.key.starts_with(&format!("{dotted}."))) => {
+            Form::Tolerant
+        }
+        None => Form::Absent,
+    }
+}
+
+/// Returns `true` if a document has the table.
+pub(crate) fn is_stated(document: &Document) -> bool {
+    document.leaves().iter().any(|leaf| leaf.key.starts_with("actuator."))
+}
+
+/// Returns the tables and keys that a document with an actuator may hold.
+pub(crate) fn sections(document: &Document) -> Vec<(String, Vec<Field>)> {
+    let own = FIELDS
+        .iter()
+        .filter(|field| form(document, field.key) != Form::Tolerant || !STATED.contains(&field.key));
+    let own = own.map(|field| {
+        let is_word = STATED.contains(&field.key) && form(document, field.key) == Form::Word;
+        if is_word { Field { kind: UNKNOWN, ..*field } } else { *field }
+    });
+    let tolerant = STATED.into_iter().filter(|key| form(document, key) == Form::Tolerant);
+    let tolerant = tolerant.map(|key| (format!("{TABLE}.{key}"), TOLERANT.to_vec()));
+    std::iter::once((TABLE.to_owned(), own.collect())).chain(tolerant).collect()
+}
+
+/// Reads the table.
+pub(crate) fn actuator(document: &Document, resolved: &Resolved) -> Result<Actuator, SettingsError> {
+    let text = |key: &str| -> Result<Option<String>, SettingsError> {
+        let setting = resolved.setting(&format!("{TABLE}.{key}"))?;
+        Ok(setting.value.as_ref().and_then(|value| value.as_str()).map(str::to_owned))
+    };
+    let number = |key: &str| resolved.float(&format!("{TABLE}.{key}"));
+    let stated = |key: &str| match form(document, key) {
+        Form::Absent => Ok(None),
+        Form::Number => number(key).map(|value| Some(Stated::Known(value))),
+        Form::Word => Ok(Some(Stated::Unknown)),
+        Form::Tolerant => Ok(Some(Stated::About {
+            value: number(&format!("{key}.value"))?,
+            tolerance: number(&format!("{key}.tolerance"))?,
+        })),
+    };
+    let optional = |key: &str| match form(document, key) {
+        Form::Absent => Ok(None),
+        _ => number(key).map(Some),
+    };
+    let command = match text("kind")?.as_deref() {
+        Some("velocity") => Command::Velocity,
+        Some("torque") => Command::Torque,
+        _ => Command::Position,
+    };
+    let needs = |key: &str, needed: bool, for_what: &str| match (stated(key)?, needed) {
+        (Some(stated), true) => Ok(stated),
+        (None, false) => Ok(Stated::Known(0.0)),
+        (None, true) => Err(SettingsError::Missing {
+            file: document.file().to_owned(),
+            key: format!("{TABLE}.{key}"),
+            meaning: FIELDS
+                .iter()
+                .find(|field| field.key == key)
+                .map_or("", |field| field.meaning)
+                .to_owned(),
+            expected: "a number, { value = …, tolerance = … }, or \"unknown\"".to_owned(),
+        }),
+        (Some(_), false) => Err(SettingsError::Refused {
+            file: document.file().to_owned(),
+            problem: format!("`{TABLE}.{key}` stands beside {for_what}; leave it out"),
+        }),
+    };
+    let kind = format!("`kind = \"{}\"`", command.name());
+    Ok(Actuator {
+        command,
+        proportional: needs(
+            "proportional",
+            command == Command::Position,
+            &format!("{kind}, which has no position error"),
+        )?,
+        derivative: needs("derivative", command != Command::Torque, &format!("{kind}, which has no loop"))?,
+        on_error: text("derivative_on")?.as_deref() == Some("error"),
+        // A command without a stated delay acts at once.
+        delay: stated("delay")?.unwrap_or(Stated::Known(0.0)),
+        hold: text("hold")?.map(|hold| if hold == "linear" { Hold::Linear } else { Hold::Zero }),
+        torque_limit: optional("torque_limit")?,
+        no_load_speed: optional("no_load_speed")?,
+        dead_band: optional("dead_band")?,
+        reflected_inertia: number("rotor_inertia")? * number("gear_ratio")?.powi(2),
+    })
+}
