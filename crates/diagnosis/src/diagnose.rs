@@ -56,21 +56,22 @@ impl Sought {
         Ok(self)
     }
 
-    /// Repeats the search with the other behavior of the input between its samples, if that comes closer. The
-    /// recalibrated simulator, which lacks the missing effects, chose between the two, which differ by half a
-    /// sampling interval. So the found sets are compared under both.
-    fn with_the_better_hold(
-        self,
+    /// Repeats the search with another behavior of the input between its samples, if that comes closer. The
+    /// recalibrated simulator, which lacks the missing effects, chose among them, which differ by up to half a
+    /// sampling interval. So the found sets are compared under all.
+    fn with_the_best_hold(
+        mut self,
         request: &Request<'_>,
         watch: &mut Stopwatch<'_>,
     ) -> Result<Self, DiagnosisError> {
-        let other = self.question.other_hold().filter(|_| request.settings.hold.is_none());
-        let Some(hold) = other else { return Ok(self) };
-        let other = Question::of(request, &self.measured, Some(hold))?;
-        let Some(known) = self.searched.better_on(&self.question, &other) else { return Ok(self) };
-        let searched = Searched::of(request, &other, self.measured.is_whole, Some(known));
-        let sought = Self { question: other, searched: watch.after("search", searched)?, ..self };
-        sought.with_enough_input(request, watch)
+        for hold in self.question.other_holds().filter(|_| request.settings.hold.is_none()) {
+            let other = Question::of(request, &self.measured, Some(hold))?;
+            let Some(known) = self.searched.better_on(&self.question, &other) else { continue };
+            let searched = Searched::of(request, &other, self.measured.is_whole, Some(known));
+            let sought = Self { question: other, searched: watch.after("search", searched)?, ..self };
+            self = sought.with_enough_input(request, watch)?;
+        }
+        Ok(self)
     }
 
     /// Returns `true` if this search has come closer than another one by more than `price` nats.
@@ -123,7 +124,7 @@ pub fn diagnose_watched(
     let mut clocks = ClockRates::as_stamped(records);
     let request = Request { records, simulator, settings };
     let mut sought =
-        Sought::of(&request, settings.hold, None, &mut watch)?.with_the_better_hold(&request, &mut watch)?;
+        Sought::of(&request, settings.hold, None, &mut watch)?.with_the_best_hold(&request, &mut watch)?;
     for _ in 0..CORRECTIONS {
         let Some((corrected, set)) = sought.clocks_corrected(&clocks) else { break };
         let request = Request { records: &corrected.records, simulator, settings };

@@ -12,15 +12,24 @@ pub enum Hold {
     Zero,
     /// Changes linearly to the next value.
     Linear,
+    /// Follows a smooth curve through its samples, as a sampled continuous signal does: cubic polynomials with the
+    /// slopes of the polynomial through the five nearest samples, whose error falls with the fourth power of the
+    /// sampling interval.
+    #[serde(rename = "band-limited")]
+    BandLimited,
 }
 
 impl Hold {
+    /// Every behavior.
+    pub const ALL: [Self; 3] = [Self::Zero, Self::Linear, Self::BandLimited];
+
     /// Returns the name in configurations and results.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Zero => "zero",
             Self::Linear => "linear",
+            Self::BandLimited => "band-limited",
         }
     }
 
@@ -30,6 +39,7 @@ impl Hold {
         match self {
             Self::Zero => "keeps its last sample",
             Self::Linear => "goes straight from sample to sample",
+            Self::BandLimited => "follows a smooth curve through its samples",
         }
     }
 }
@@ -45,7 +55,8 @@ pub struct Input {
     values: Vec<f64>,
     hold: Hold,
     /// Polynomials of the value and of its rate from each time to the next one, of the fraction of that time which
-    /// has passed. Empty unless the input is thinned.
+    /// has passed. Empty unless the input is thinned or
+    /// band-limited.
     curves: Vec<[Cubic; 2]>,
 }
 
@@ -91,6 +102,42 @@ const QUADRATURE: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
 ];
 
+/// Number of samples to either side of one whose polynomial tells the slope there.
+const BESIDE: usize = 2;
+
+/// Returns the cubic polynomials from each sample to the next, and their rates.
+fn smooth_curves(times: &[f64], values: &[f64]) -> Vec<[Cubic; 2]> {
+    let slopes: Vec<f64> = (0..times.len()).map(|at| slope_at(times, values, at)).collect();
+    let pairs = |list: &[f64]| -> Vec<(f64, f64)> {
+        list.iter().copied().zip(list.iter().copied().skip(1)).collect()
+    };
+    let pieces = pairs(times).into_iter().zip(pairs(values)).zip(pairs(&slopes));
+    let curve =
+        |(((from, until), (a, next)), (slope, next_slope)): (((f64, f64), (f64, f64)), (f64, f64))| {
+            let length = until - from;
+            let (b, end) = (slope * length, next_slope * length);
+            let (c, d) = (3.0 * (next - a) - 2.0 * b - end, 2.0 * (a - next) + b + end);
+            [[a, b, c, d], [b / length, 2.0 * c / length, 3.0 * d / length, 0.0]]
+        };
+    pieces.map(curve).collect()
+}
+
+/// Returns the slope at a sample of the polynomial through it and the [`BESIDE`] samples on either side.
+fn slope_at(times: &[f64], values: &[f64], at: usize) -> f64 {
+    let near = at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(times.len());
+    let own = || near.clone().filter_map(|index| Some((index, *times.get(index)?, *values.get(index)?)));
+    let Some((_, here, value)) = own().find(|(index, ..)| *index == at) else { return 0.0 };
+    let beside = || own().filter(|(index, ..)| *index != at);
+    // Lagrange's formula: the slopes of all basis polynomials sum to zero.
+    beside()
+        .map(|(index, time, other)| {
+            let rest = beside().filter(|(other, ..)| *other != index);
+            let basis: f64 = rest.map(|(_, third, _)| (here - third) / (time - third)).product();
+            basis * (other - value) / (time - here)
+        })
+        .sum()
+}
+
 impl Input {
     /// Creates an input from its samples; times in seconds, values in the unit that the nominal `input_gain`
     /// converts to a torque.
@@ -118,7 +165,8 @@ impl Input {
         if let Some((index, (_, &time))) = pairs.enumerate().find(|(_, (before, after))| after <= before) {
             return bad("time", index + 1, time, "times must strictly increase");
         }
-        Ok(Self { times, values, hold, curves: Vec::new() })
+        let curves = if hold == Hold::BandLimited { smooth_curves(&times, &values) } else { Vec::new() };
+        Ok(Self { times, values, hold, curves })
     }
 
     /// Returns the sample times in seconds, increasing; as many as [`Self::values`].

@@ -43,7 +43,7 @@ fn centered(part: &Trajectory, hold: Hold) -> Option<Trajectory> {
     let before = input.iter().take(1).chain(input);
     let mean = |(now, before): (&f64, &f64)| match hold {
         Hold::Zero => 0.5 * (now + before),
-        Hold::Linear => *now,
+        Hold::Linear | Hold::BandLimited => *now,
     };
     let input = input.iter().zip(before).map(mean).collect();
     Trajectory::new(part.name(), part.times_s().to_vec(), part.values().to_vec(), Some(input)).ok()

@@ -3,7 +3,7 @@
 use crate::data::observations::Observations;
 use crate::data::segments::{MOST_SEARCHED, cut};
 use crate::error::DiagnosisError;
-use crate::fit::calibrate::better_hold;
+use crate::fit::calibrate::best_hold;
 use crate::fit::fitted::Fit;
 use crate::fit::stopping::Stopping;
 use crate::linear::dictionary::Dictionary;
@@ -44,7 +44,7 @@ pub fn single_effect(
     let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
     let all = cut(records, &kept, simulator)?;
     let data = all.sparser(MOST_SEARCHED).thinned(MOST_SEARCHED);
-    let (data, base) = better_hold(&data, simulator)?;
+    let (data, base) = best_hold(&data, simulator)?;
     let candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
     let dictionary = Dictionary::at(&data, &base.calibrated, &candidates)?;
     let proposals = alone(&data, &base.calibrated, &dictionary);

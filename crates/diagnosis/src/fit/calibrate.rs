@@ -8,6 +8,7 @@ use crate::fit::significance::{OFF_BY_CHANCE, significant};
 use crate::fit::stopping::Stopping;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Known};
 use dynamics::{Hold, Nominal, NominalSimulator};
+use rayon::prelude::*;
 
 /// Fits of the given simulator and of the recalibrated one.
 #[derive(Debug, Clone)]
@@ -92,24 +93,28 @@ fn swinging_at(omega: f64, simulator: &NominalSimulator, hypothesis: &Hypothesis
     }
 }
 
-/// Returns the data and fits for the input hold that fits better: constant between samples, or linear.
-pub(crate) fn better_hold(
+/// Returns the data and fits for the behavior of the input between its samples that fits best.
+pub(crate) fn best_hold(
     data: &Data,
     simulator: &NominalSimulator,
 ) -> Result<(Data, Baseline), DiagnosisError> {
-    let linear = baseline(data, simulator)?;
     if !data.driven() {
-        return Ok((data.clone(), linear));
+        return Ok((data.clone(), baseline(data, simulator)?));
     }
-    let zero_data = data.holding(Hold::Zero)?;
-    let zero = baseline(&zero_data, simulator)?;
-    // A known delay was found with one of the two holds, which differ by half an interval. So the hold with
-    // which the simulator needs no calibration is kept.
-    let is_right = |own: &Baseline| !simulator.effects().is_empty() && !own.is_off();
-    let is_better = match (is_right(&zero), is_right(&linear)) {
-        (true, false) => true,
-        (false, true) => false,
-        _ => zero.calibrated.squares < linear.calibrated.squares,
+    let under = |hold: Hold| -> Result<(Data, Baseline), DiagnosisError> {
+        let data = data.holding(hold)?;
+        let own = baseline(&data, simulator)?;
+        Ok((data, own))
     };
-    if is_better { Ok((zero_data, zero)) } else { Ok((data.clone(), linear)) }
+    let mut all: Vec<(Data, Baseline)> = Hold::ALL.into_par_iter().map(under).collect::<Result<_, _>>()?;
+    // A known delay was found with one of the holds, which differ by half an interval. So a hold with which the
+    // simulator needs no calibration is kept.
+    let is_right = |own: &Baseline| !simulator.effects().is_empty() && !own.is_off();
+    if all.iter().any(|(_, own)| is_right(own)) {
+        all.retain(|(_, own)| is_right(own));
+    }
+    let squares = |own: &(Data, Baseline)| own.1.calibrated.squares;
+    all.into_iter()
+        .min_by(|a, b| squares(a).total_cmp(&squares(b)))
+        .ok_or_else(|| DiagnosisError::NotFitted { reason: "no input was tried".to_owned() })
 }

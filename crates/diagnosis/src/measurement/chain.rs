@@ -43,6 +43,7 @@ pub(crate) fn between_samples(hold: Hold) -> Finding {
     let name = match hold {
         Hold::Zero => "zero-order hold",
         Hold::Linear => "linear interpolation",
+        Hold::BandLimited => "band-limited interpolation",
     };
     Finding { effect: None, text: format!("for the model, the input {} ({name})", hold.in_words()) }
 }

@@ -3,7 +3,7 @@
 use super::{Measured, Request};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
-use crate::fit::calibrate::{Baseline, baseline, better_hold};
+use crate::fit::calibrate::{Baseline, baseline, best_hold};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
@@ -49,7 +49,7 @@ impl Question {
                 let base = baseline(&data, simulator)?;
                 (data, base)
             }
-            None => better_hold(&measured.data, simulator)?,
+            None => best_hold(&measured.data, simulator)?,
         };
         let data = data.for_noise(floor::floor(&data, &base.calibrated.residuals).value);
         let mut candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
@@ -103,8 +103,9 @@ impl Question {
         self.data.inputs.iter().flatten().map(Input::hold).next()
     }
 
-    /// Returns the other possible behavior of the input between its samples.
-    pub(crate) fn other_hold(&self) -> Option<Hold> {
-        self.hold().map(|hold| if hold == Hold::Linear { Hold::Zero } else { Hold::Linear })
+    /// Returns the other possible behaviors of the input between its samples.
+    pub(crate) fn other_holds(&self) -> impl Iterator<Item = Hold> + use<> {
+        let own = self.hold();
+        Hold::ALL.into_iter().filter(move |hold| own.is_some_and(|own| own != *hold))
     }
 }

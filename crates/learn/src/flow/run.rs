@@ -93,7 +93,7 @@ impl Run<'_> {
         // Without an input nothing drives the system.
         let at = |number: usize| input.and_then(|input| input.get(number)).copied().unwrap_or(0.0);
         for (number, (&from, &to)) in times_s.iter().zip(times_s.iter().skip(1)).enumerate() {
-            let end = if self.hold == Hold::Linear { at(number + 1) } else { at(number) };
+            let end = if self.hold != Hold::Zero { at(number + 1) } else { at(number) };
             going.interval(to - from, at(number), end);
             if !(going.state.position.abs() <= self.bound && going.state.velocity.is_finite()) {
                 return Err(LearnError::Diverged { time_s: to - first, bound: self.bound });

@@ -15,7 +15,9 @@ fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f6
         let (from, to) = (pick(times, before), pick(times, next));
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
         match hold {
-            Hold::Linear => pick(input, before) + share * (pick(input, next) - pick(input, before)),
+            Hold::Linear | Hold::BandLimited => {
+                pick(input, before) + share * (pick(input, next) - pick(input, before))
+            }
             Hold::Zero if share < 1.0 => pick(input, before),
             Hold::Zero => pick(input, next),
         }

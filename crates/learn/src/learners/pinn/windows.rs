@@ -126,7 +126,7 @@ fn input_at(piece: &Trajectory, time: f64, hold: Hold) -> f64 {
     let Some(input) = piece.input() else { return 0.0 };
     let at = |time: f64| interpolated(piece.times_s(), input, time);
     match hold {
-        Hold::Linear => at(time),
+        Hold::Linear | Hold::BandLimited => at(time),
         Hold::Zero => {
             let interval = piece.duration_s() / piece.len().saturating_sub(1).max(1) as f64;
             // Simpson's rule.

@@ -52,7 +52,7 @@ impl Weak {
                 let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1)));
                 let input = match hold {
                     Hold::Zero => 0.5 * (state.input + before.copied().unwrap_or(state.input)),
-                    Hold::Linear => state.input,
+                    Hold::Linear | Hold::BandLimited => state.input,
                 };
                 let direction = state.velocity.signum();
                 Place { position: state.position, velocity: state.velocity, direction, input }

@@ -50,7 +50,7 @@ fn matched(part: &Trajectory, data: &DataSet) -> Vec<(Place, f64)> {
         let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1))).copied();
         let input = match data.hold {
             Hold::Zero => 0.5 * (state.input + before.unwrap_or(state.input)),
-            Hold::Linear => state.input,
+            Hold::Linear | Hold::BandLimited => state.input,
         };
         let direction = state.velocity.signum();
         (Place { position: state.position, velocity: state.velocity, direction, input }, state.acceleration)
