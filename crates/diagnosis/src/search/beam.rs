@@ -171,6 +171,12 @@ pub(crate) struct Explored {
     unmasked: BTreeSet<Vec<usize>>,
 }
 
+impl Explored {
+    fn of(archive: Archive, tried: BTreeSet<Vec<usize>>) -> Self {
+        Self { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() }
+    }
+}
+
 /// Searches sets of candidates, starting from the `known` sets if there are any.
 pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
     let &Asked { data, calibrated, .. } = asked;
@@ -185,7 +191,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
         begin(asked, &mut archive, &mut tried);
         from_afar(asked, &mut archive);
     }
-    let mut explored = Explored { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() };
+    let mut explored = Explored::of(archive, tried);
     go_on(asked, &mut explored);
     explored
 }
@@ -211,46 +217,56 @@ fn bases(ranked: &[&Fit], expanded: &mut BTreeSet<Vec<usize>>, depth: usize) -> 
     Vec::new()
 }
 
-/// Continues a search from the best sets that were not expanded yet.
-pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
+/// Returns the fits of the first two rounds: single candidates and pairs, and what is around the best of them.
+pub(crate) fn first_rounds(asked: &Asked<'_>) -> Archive {
+    let mut explored = Explored::of(Archive::of(asked.calibrated), BTreeSet::from([Vec::new()]));
+    begin(asked, &mut explored.archive, &mut explored.tried);
+    round(asked, &mut explored);
+    explored.archive
+}
+
+/// Expands the best sets that were not expanded yet. Returns `true` if there were any and a further round may find
+/// more.
+fn round(asked: &Asked<'_>, explored: &mut Explored) -> bool {
     let &Asked { data, threshold, .. } = asked;
     let Explored { archive: pool, tried, expanded, unmasked } = explored;
+    unmask(data, pool, unmasked);
+    let time = pool.autocorrelation_time();
+    let before = pool.highest(time);
+    let ranked = pool.ranked(time);
+    let goes_on = ranked.first().is_some_and(|best| leaves_more(data, best));
+    let bases = bases(&ranked, expanded, if goes_on { DEPTH } else { 1 });
+    if bases.is_empty() {
+        return false;
+    }
+    let best = ranked.first().map(|best| best.hypothesis.ranks());
+    let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
+        .par_iter()
+        .map(|base| moves(asked, base, best.as_ref() == Some(&base.hypothesis.ranks())))
+        .collect();
+    let mut proposals: Vec<Proposal> = Vec::new();
+    for (own, dropped) in moves {
+        // A set that a better one has proposed already begins from there.
+        let known: BTreeSet<Vec<usize>> = proposals.iter().map(|other| other.hypothesis.ranks()).collect();
+        proposals.extend(own.into_iter().filter(|own| !known.contains(&own.hypothesis.ranks())));
+        for fit in dropped {
+            pool.admit(data, fit);
+        }
+    }
+    settle(data, pool, tried, proposals);
+    let time = pool.autocorrelation_time();
+    let is_spent = |best: &&Fit| expanded.contains(&best.hypothesis.ranks()) && !leaves_more(data, best);
+    !(pool.highest(time) - before < threshold && pool.ranked(time).first().is_some_and(is_spent))
+}
+
+/// Continues a search from the best sets that were not expanded yet.
+pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
     for _ in 0..MOST_ROUNDS {
-        unmask(data, pool, unmasked);
-        let time = pool.autocorrelation_time();
-        let before = pool.highest(time);
-        let ranked = pool.ranked(time);
-        let goes_on = ranked.first().is_some_and(|best| leaves_more(data, best));
-        let bases = bases(&ranked, expanded, if goes_on { DEPTH } else { 1 });
-        if bases.is_empty() {
-            break;
-        }
-        let best = ranked.first().map(|best| best.hypothesis.ranks());
-        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
-            .par_iter()
-            .map(|base| moves(asked, base, best.as_ref() == Some(&base.hypothesis.ranks())))
-            .collect();
-        let mut proposals: Vec<Proposal> = Vec::new();
-        for (own, dropped) in moves {
-            // A set that a better one has proposed already begins from there.
-            let known: BTreeSet<Vec<usize>> =
-                proposals.iter().map(|other| other.hypothesis.ranks()).collect();
-            proposals.extend(own.into_iter().filter(|own| !known.contains(&own.hypothesis.ranks())));
-            for fit in dropped {
-                pool.admit(data, fit);
-            }
-        }
-        settle(data, pool, tried, proposals);
-        let time = pool.autocorrelation_time();
-        if pool.highest(time) - before < threshold
-            && pool
-                .ranked(time)
-                .first()
-                .is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()) && !leaves_more(data, fit))
-        {
+        if !round(asked, explored) {
             break;
         }
     }
+    let (data, pool) = (asked.data, &mut explored.archive);
     polish(data, pool);
     reshape(data, pool);
     without_members(data, pool);

@@ -10,6 +10,7 @@ use crate::fit::stopping::Stopping;
 use crate::linear::dictionary::Dictionary;
 use crate::model::candidate::Candidate;
 use crate::residual::floor;
+use crate::search::asked::Asked;
 use crate::search::null;
 use crate::search::weak_form::Proposed;
 use dynamics::{Hold, Input};
@@ -96,6 +97,18 @@ impl Question {
         let knots = joined.spare_knots(set).min(self.knots / 2);
         let finer = Self::on(request, self.data.clone(), self.base.clone(), self.candidates.clone(), knots);
         finer.map(Some)
+    }
+
+    /// Returns what a search for sets of up to `most_effects` effects is asked, on the coarse samples.
+    pub(crate) fn asked(&self, most_effects: usize) -> Asked<'_> {
+        Asked {
+            data: &self.coarse,
+            calibrated: &self.coarse_base,
+            candidates: &self.candidates,
+            proposed: &self.proposed,
+            most_effects,
+            threshold: self.enough,
+        }
     }
 
     /// Returns the behavior of the input between its samples; `None` without an input.

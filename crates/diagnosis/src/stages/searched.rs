@@ -7,7 +7,7 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::asked::Asked;
-use crate::search::beam::{Explored, go_on, search};
+use crate::search::beam::{Explored, first_rounds, go_on, search};
 use crate::search::plain::plain_family;
 use crate::sets::archive::Archive;
 use crate::sets::proposals::proposal;
@@ -25,6 +25,9 @@ const MOST_INTERVALS: usize = 3;
 
 /// Number of sets of one effect that are compared under the other behavior of the input, beside the best set.
 const SINGLES: usize = 3;
+
+/// Number of sets from the first rounds under the other behavior that are compared.
+const FRESH: usize = 2;
 
 /// Set from which a search starts, on segments joined by `by`.
 pub(crate) struct Known {
@@ -51,16 +54,9 @@ impl Searched {
         is_whole: bool,
         known: Option<Known>,
     ) -> Self {
-        let Question { candidates, proposed, coarse, coarse_base, enough, .. } = question;
+        let candidates = &question.candidates;
         let most_effects = request.settings.most_effects.clamp(1, MOST_EFFECTS);
-        let asked = Asked {
-            data: coarse,
-            calibrated: coarse_base,
-            candidates,
-            proposed,
-            most_effects,
-            threshold: *enough,
-        };
+        let asked = question.asked(most_effects);
         let (interval, mut explored) = explore(&asked, is_whole, known);
         let ShootingInterval { data, calibrated, .. } = &interval;
         plain_family(data, calibrated, candidates, &mut explored.archive);
@@ -76,8 +72,9 @@ impl Searched {
 
     /// Returns the set with the highest evidence on every sample of another question, which differs from
     /// `own` in the behavior of the input, if that evidence exceeds that of all sets on the samples of `own`.
-    /// Three kinds of sets are compared: the best set, the best set without each of its members, which may
-    /// only compensate for the wrong behavior, and the best [`SINGLES`] sets of one effect.
+    /// Four kinds of sets are compared: the best set, the best set without each of its members, which may only
+    /// compensate for the wrong behavior, the best [`SINGLES`] sets of one effect, and the best [`FRESH`] sets of the first
+    /// rounds under the other behavior.
     pub(crate) fn better_on(&self, own: &Question, other: &Question) -> Option<Known> {
         let time = self.found.autocorrelation_time();
         let ranked = self.found.ranked(time);
@@ -89,7 +86,13 @@ impl Searched {
         let asked: Vec<&Fit> =
             std::iter::once(*best).chain(singles.take(SINGLES).copied()).chain(&smaller).collect();
         let short = |set: &&Fit| shortened(&own.coarse, &self.interval.data, set).ok();
-        let short: Vec<Option<Fit>> = asked.par_iter().map(short).collect();
+        let mut short: Vec<Option<Fit>> = asked.par_iter().map(short).collect();
+        // An effect of the input's own path may stand in for the wrong behavior in every set that was found.
+        let fresh = first_rounds(&other.asked(self.most_effects));
+        let fresh: Vec<Fit> =
+            fresh.ranked(fresh.autocorrelation_time()).into_iter().take(FRESH).cloned().collect();
+        short.extend(fresh.iter().cloned().map(Some));
+        let asked: Vec<&Fit> = asked.into_iter().chain(&fresh).collect();
         // The best set leaves the least, so that the others need no more knots than it does.
         let at = short.first()?.as_ref()?;
         let [own_data, other_data] =
@@ -106,6 +109,16 @@ impl Searched {
         let evidence = |set: &Fit| score(set, time) - price(&own.data, set, own.candidates.len(), 0.0);
         let most = both().map(|(fits, _)| evidence(&fits.0)).fold(f64::NEG_INFINITY, f64::max);
         let (fits, set) = both().max_by(|a, b| evidence(&a.0.1).total_cmp(&evidence(&b.0.1)))?;
+        for (fits, set) in both() {
+            eprintln!(
+                "BO {:?} own {:.1} other {:.1} rms {:.2e} {:.2e}",
+                set.hypothesis.ids(),
+                evidence(&fits.0),
+                evidence(&fits.1),
+                (fits.0.squares / fits.0.freedom()).sqrt(),
+                (fits.1.squares / fits.1.freedom()).sqrt()
+            );
+        }
         (evidence(&fits.1) > most).then(|| Known { by: self.interval.by, set: set.clone() })
     }
 
