@@ -45,6 +45,15 @@ pub enum WorkflowError {
         /// Columns of the record.
         columns: String,
     },
+    /// A joint stands still in every record.
+    #[error(
+        "{file}: the command stands still, or the joint does not follow it, in every recording: nothing tells what the \
+         simulator lacks; give a recording in which this joint moves by many steps of its sensor"
+    )]
+    StandsStill {
+        /// Name of the first record.
+        file: String,
+    },
     /// The gain of an inner loop is unknown, and a record does not tell where to begin.
     #[error(
         "{file}: the gain of [actuator] is \"unknown\", and no command of this record explains its motion well enough to \

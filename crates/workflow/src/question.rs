@@ -82,6 +82,34 @@ fn gain_of(record: &Path, stated: &StatedNominal, reading: &Reading) -> Option<(
     ))
 }
 
+/// Returns a reading that takes the columns of a record that was read, for the other records of the system.
+fn alike_to(loaded: &Loaded, reading: &Reading) -> Reading {
+    let (mut alike, own) = (reading.clone(), &loaded.source.reading);
+    let columns = &mut alike.options.columns;
+    columns.value.get_or_insert_with(|| own.value.column.clone());
+    if let Some(input) = &own.input {
+        columns.input.get_or_insert_with(|| input.column.clone());
+    }
+    alike
+}
+
+/// Number of steps of the sensor within which a body counts as standing still.
+const STILL: f64 = 3.0;
+
+/// Returns `true` if the commanded position, or the body that it commands, stands still within the sensor's steps.
+fn is_still(loaded: &Loaded) -> bool {
+    let reading = &loaded.source.reading;
+    let commanded =
+        reading.input.as_ref().is_some_and(|input| input.unit.is_some() && input.unit == reading.value.unit);
+    let Some(command) = loaded.record.input().filter(|_| commanded) else { return false };
+    let span = |values: &[f64]| {
+        let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        highest - values.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let step = loaded.record.quantum();
+    [command, loaded.record.values()].iter().any(|values| span(values) <= STILL * step)
+}
+
 impl Question {
     /// Combines records and a nominal simulator.
     ///
@@ -122,10 +150,17 @@ impl Question {
         };
         let reading = reading.clone().for_nominal(&stated);
         let mut given = Vec::new();
+        let (mut columns, mut still): (Option<Reading>, Vec<String>) = (None, Vec::new());
         for path in records {
             let start = given.len();
             for log in logs(path)? {
-                let loaded = Loaded::read(&log, &reading)?;
+                let alike = columns.as_ref().and_then(|alike| Loaded::read(&log, alike).ok());
+                let loaded = alike.map_or_else(|| Loaded::read(&log, &reading), Ok)?;
+                columns.get_or_insert_with(|| alike_to(&loaded, &reading));
+                if is_still(&loaded) {
+                    still.push(log.display().to_string());
+                    continue;
+                }
                 let others = other_swings(&loaded, &stated);
                 given.push(loaded.given(&stated)?);
                 for [from_s, to_s] in others {
@@ -140,8 +175,16 @@ impl Question {
                 .into_iter()
                 .for_each(|first: &mut Given| first.row.findings.extend(left_out(path)));
         }
-        if let (Some(first), Some((_, finding))) = (given.first_mut(), gain) {
-            first.row.findings.push(finding);
+        if given.is_empty()
+            && let Some(file) = still.first()
+        {
+            return Err(WorkflowError::StandsStill { file: file.clone() });
+        }
+        if let Some(first) = given.first_mut() {
+            first.row.findings.extend(gain.map(|(_, finding)| finding));
+            first.row.findings.extend(still.iter().map(|file| {
+                format!("{file} is left out: its command stands still or the joint does not follow it, so it tells nothing")
+            }));
         }
         Self::new(given, stated, nominal.display().to_string())
     }
