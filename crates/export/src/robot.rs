@@ -9,9 +9,9 @@ use std::fmt::Write;
 /// Gravitational acceleration of the model, in m/s².
 const GRAVITY: f64 = 9.81;
 
-/// Writes a MuJoCo model of one body on one joint with damping, stiffness, springref and frictionloss. The
-/// armature holds the inertia that the mass hanging on the joint does not have. Effects that no attribute of
-/// a joint can express are stated in a comment.
+/// Writes a MuJoCo model of one body on one joint with damping, stiffness, springref and frictionloss, and of a
+/// second body on a joint of its own if there is one. The armature holds the inertia that the mass hanging on
+/// the joint does not have. Effects that no attribute of a joint can express are stated in a comment.
 #[must_use]
 pub fn mjcf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -57,11 +57,27 @@ pub fn mjcf(repaired: &Repaired) -> String {
             2.0 * timestep(repaired)
         );
     }
+    let _ = writeln!(text, " armature=\"{armature:?}\"/>");
+    let (mut positions, mut velocities) =
+        (format!("{:?}", repaired.start.position), format!("{:?}", repaired.start.velocity));
+    if let Some(second) = &terms.second_body {
+        // Its center is on the axis of a hinge, where its weight turns nothing. Its joint deflects by ψ - θ.
+        let inertia = second.inertia;
+        let _ = writeln!(
+            text,
+            "      <body name=\"second_body\">\n        <inertial pos=\"0 0 0\" mass=\"{inertia:?}\" \
+             diaginertia=\"{inertia:?} {inertia:?} {inertia:?}\"/>\n        \
+             <joint name=\"coupling\" type=\"{kind}\" axis=\"{axis}\" damping=\"{:?}\" stiffness=\"{:?}\"/>\n      \
+             </body>",
+            second.damping, second.stiffness
+        );
+        let _ = write!(positions, " {:?}", second.start.0);
+        let _ = write!(velocities, " {:?}", second.start.1);
+    }
     let _ = write!(
         text,
-        " armature=\"{armature:?}\"/>\n    </body>\n  </worldbody>\n  <keyframe>\n    \
-         <key name=\"start\" qpos=\"{:?}\" qvel=\"{:?}\"/>\n  </keyframe>\n</mujoco>\n",
-        repaired.start.position, repaired.start.velocity
+        "    </body>\n  </worldbody>\n  <keyframe>\n    \
+         <key name=\"start\" qpos=\"{positions}\" qvel=\"{velocities}\"/>\n  </keyframe>\n</mujoco>\n"
     );
     text
 }
@@ -97,6 +113,14 @@ pub fn urdf(repaired: &Repaired) -> String {
         terms.left_out.push(format!(
             "the weight, which follows from the link's mass and center: {torque:?} held level, hanging straight down \
              {angle:?} rad before position 0"
+        ));
+    }
+    if let Some(second) = &terms.second_body {
+        let (deflection, rate) = second.start;
+        terms.left_out.push(format!(
+            "the second body, which needs a link and a joint with a spring: inertia {:?}, stiffness {:?}, damping {:?}; \
+             at the start its joint is deflected by {deflection:?} and moves at {rate:?}",
+            second.inertia, second.stiffness, second.damping
         ));
     }
     let (kind, limit) = match nominal.coordinate() {
