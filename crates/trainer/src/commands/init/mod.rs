@@ -208,6 +208,7 @@ impl Found {
                 "because": column.because,
             })
         });
+        let resonance = self.surest.resonance();
         json!({
             "record": {
                 "path": self.surest.look.source.path,
@@ -225,6 +226,8 @@ impl Found {
                 "coordinate": files::name(self.coordinate),
                 "natural_frequency_hz": number(self.surest.oscillator.natural_frequency_hz()),
                 "damping_ratio": number(self.surest.oscillator.damping_ratio()),
+                "quality_factor": resonance.map(|found| found.quality_factor),
+                "half_power_width_hz": resonance.map(|found| found.half_power_width_hz),
                 "damping_per_inertia": number(Some(self.surest.oscillator.damping)),
                 "rest": number(self.surest.oscillator.rest),
                 "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
@@ -260,6 +263,7 @@ impl Found {
             (Some(frequency), Some(ratio)) => {
                 rows.push(row("natural frequency, Hz", format!("{}, undamped", uncertain(frequency))));
                 rows.push(row("damping ratio", uncertain(ratio)));
+                rows.extend(self.surest.resonance().iter().flat_map(modes::sharpness));
             }
             _ => rows
                 .push(row("natural frequency", "none: nothing pulls it back to a rest position".to_owned())),
