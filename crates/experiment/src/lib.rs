@@ -25,7 +25,7 @@ pub use learning::{
     LearnSettings, LearnSource, LearnStudy, LearningProblem, is_learning, learn_schema, resolve_learning,
 };
 pub use nominal::{KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, StatedNominal, resolve_nominal};
-pub use pipelines::{EnvelopeSettings, Pipeline, envelope_by_default};
+pub use pipelines::{EnvelopeSettings, Pipeline};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
     is_prediction, resolve_prediction,

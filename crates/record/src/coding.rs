@@ -12,6 +12,8 @@ pub(crate) struct Decoded {
     pub(crate) values: Vec<f64>,
     /// Name of the coding with its numbers, as a sentence.
     pub(crate) finding: String,
+    /// `true` if it wrapped after a turn of the column's unit, which confirms that unit.
+    pub(crate) is_turn: bool,
 }
 
 /// Number of bits of the counts that are looked for.
@@ -33,7 +35,7 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
             "the values wrap: each jump by about {} was taken for a passage of the end of the range, and undone",
             (1e3 * period).round() / 1e3
         );
-        Some(Decoded { values, finding })
+        Some(Decoded { values, finding, is_turn: unit.is_some_and(|unit| period == TAU / unit.to_si()) })
     });
     let signs = BITS.filter(|_| whole).filter_map(|bits| {
         let half = f64::from(bits - 1).exp2();
@@ -41,7 +43,7 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
         let finding = format!(
             "the values jump by about {half} where they pass zero: sign and magnitude in {bits} bits, which was undone"
         );
-        Some(Decoded { values, finding })
+        Some(Decoded { values, finding, is_turn: false })
     });
     // Quick motion of several turns has steps of half a turn as well, but changes them slowly.
     let bend = largest_bend(values);

@@ -9,6 +9,9 @@ use std::path::{Path, PathBuf};
 use workflow::WorkflowError;
 use workflow::read::centered;
 
+/// Damping ratio from which no swing is seen.
+pub(super) const CRITICAL: f64 = 0.95;
+
 /// Log with its nearest linear oscillator.
 pub(super) struct Looked {
     pub(super) path: PathBuf,
@@ -74,6 +77,11 @@ fn identified(path: &Path, reading: &Reading, look: Look) -> Result<Looked, Trai
 impl Looked {
     pub(super) fn duration_s(&self) -> f64 {
         self.look.clock.duration_s()
+    }
+
+    /// Returns `true` if the oscillator swings visibly.
+    pub(super) fn swings(&self) -> bool {
+        self.oscillator.damping_ratio().is_some_and(|ratio| ratio.value < CRITICAL)
     }
 
     /// Returns the sharpness of the oscillator's resonance; `None` if it has none.

@@ -3,6 +3,8 @@
 mod damping;
 mod looked;
 mod modes;
+mod shell;
+mod tried;
 
 use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
@@ -12,15 +14,15 @@ use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
-use experiment::envelope_by_default;
 use identify::{Estimated, regular_part};
-use looked::{Looked, looked};
+use looked::{CRITICAL, Looked, looked};
 use modes::uncertain;
 use record::Fault;
 use report::format::significant;
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
-use std::path::{Component, Path, PathBuf};
+use shell::{given, path_from, path_word};
+use std::path::{Path, PathBuf};
 use workflow::guess as files;
 use workflow::read::{bias, coordinate_of};
 use workflow::{WorkflowError, in_options, left_out, logs};
@@ -59,8 +61,8 @@ struct Found {
     each: Vec<EachLog>,
     coordinate: Coordinate,
     folder: PathBuf,
-    /// Remark on a damping ratio that changes along the decay.
-    changing: Option<String>,
+    /// Remarks from trying the commands: a damping ratio that changes along the decay, and refusals.
+    tried: Vec<String>,
     /// Names of the files with their texts.
     files: Vec<(&'static str, String)>,
     /// Purpose of each suggested command, and the command.
@@ -109,35 +111,52 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let Looked { path, reading, look, oscillator, .. } = &surest;
     let coordinate = coordinate_of(look.source.reading.coordinate);
     let name = path.display().to_string();
-    let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
-    let (mut next, mut changing) = (Vec::new(), None);
+    let nominal = (folder.join("nominal.toml"), files::nominal_toml(&name, oscillator, coordinate));
+    let (mut next, mut tried) = (Vec::new(), Vec::new());
+    let reading = Reading { remove_mean: bias || reading.remove_mean, ..reading.clone() };
     if is_diagnosable(&surest) {
-        next.push((
-            "what a linear oscillator with these numbers lacks",
-            format!(
-                "trainer diagnose {} --nominal {}{}{}",
-                path_word(log),
-                path_word(&folder.join("nominal.toml")),
-                given(reading),
-                if bias { " --remove-mean" } else { "" }
-            ),
-        ));
+        let (file, text) = &nominal;
+        match tried::diagnosis(log, (file, text), &reading.plain()) {
+            Ok(()) => next.push((
+                "what a linear oscillator with these numbers lacks",
+                format!(
+                    "trainer diagnose {} --nominal {}{}",
+                    path_word(log),
+                    path_word(file),
+                    given(&reading)
+                ),
+            )),
+            Err(refusal) => tried.push(format!("a diagnosis would refuse this record: {refusal}")),
+        }
     }
+    let mut files = vec![("nominal.toml", nominal.1)];
     // Only a free decay has an envelope from which a damping ratio can be estimated.
-    let envelope = envelope_by_default(&look.record, &look.clock);
-    if let Some(envelope) = envelope.ok().filter(|_| oscillator.input_gain.is_none()) {
-        changing = damping::changing(&envelope.envelope);
-        let path = path_from(&folder, path).display().to_string();
-        files.push(("estimate.toml", files::configuration(&path, &options(&surest))));
-        next.push((
-            match envelope.because {
-                Some(_) => "the damping ratio from the samples",
-                None => "the damping ratio from the decay of the peaks",
-            },
-            format!("trainer {}", path_word(&folder.join("estimate.toml"))),
-        ));
+    if oscillator.input_gain.is_none() {
+        let file = folder.join("estimate.toml");
+        let configuration =
+            |path: &Path| files::configuration(&path.display().to_string(), &options(&surest));
+        // The folder is not there yet, and a path out of it leads nowhere.
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        match tried::estimate(&file, &configuration(&absolute)) {
+            Ok(envelope) => {
+                tried.extend(damping::changing(&envelope.envelope));
+                files.push(("estimate.toml", configuration(&path_from(&folder, path))));
+                next.push((
+                    match envelope.because {
+                        Some(_) => "the damping ratio from the samples",
+                        None => "the damping ratio from the decay of the peaks",
+                    },
+                    format!("trainer {}", path_word(&file)),
+                ));
+            }
+            // A motion without a swing has its own remark.
+            Err(refusal) if surest.swings() => {
+                tried.push(format!("an estimate would refuse this record: {refusal}"));
+            }
+            Err(_) => {}
+        }
     }
-    Ok(Found { surest, each, coordinate, folder, changing, files, next })
+    Ok(Found { surest, each, coordinate, folder, tried, files, next })
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
@@ -320,7 +339,7 @@ impl Found {
             .chain(self.no_swing())
             .chain(modes::remark(&self.surest.modes))
             .chain(self.uneven())
-            .chain(self.changing.clone())
+            .chain(self.tried.clone())
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -396,9 +415,6 @@ impl Found {
     }
 }
 
-/// Damping ratio from which no swing is seen.
-const CRITICAL: f64 = 0.95;
-
 /// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
 /// records of noise, white or red, have 4 to 15 % or no frequency.
 const HARDLY_KNOWN: f64 = 0.03;
@@ -411,88 +427,4 @@ const FEW_CYCLES: f64 = 3.0;
 fn is_built_here() -> bool {
     let program = own_program().unwrap_or_default();
     program.ancestors().skip(1).take(2).any(|folder| folder.ends_with("target"))
-}
-
-/// Formats the given reading options as options of the diagnosis.
-fn given(reading: &Reading) -> String {
-    let stated = serde_json::to_value(reading).unwrap_or_default();
-    let usual = serde_json::to_value(Reading::default()).unwrap_or_default();
-    let Value::Object(stated) = stated else { return String::new() };
-    let changed = stated.iter().filter(|(key, value)| usual.get(key.as_str()) != Some(value));
-    let option = |(key, value): (&String, &Value)| {
-        let name = match key.as_str() {
-            "filter" => "where".to_owned(),
-            "from_s" => "from".to_owned(),
-            "to_s" => "to".to_owned(),
-            key => key.replace('_', "-"),
-        };
-        match value {
-            Value::Bool(_) => format!(" --{name}"),
-            Value::String(text) => {
-                format!(" --{name} {}", word(text))
-            }
-            other => format!(" --{name} {other}"),
-        }
-    };
-    changed.map(option).collect()
-}
-
-/// Quotes a word for a shell.
-fn word(text: &str) -> String {
-    let plain = |sign: char| sign.is_alphanumeric() || "-_./=:,+%@".contains(sign);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
-    }
-}
-
-fn path_word(path: &Path) -> String {
-    word(&path.display().to_string())
-}
-
-/// Returns the path of a file relative to a folder; absolute if the folder is not clearly below the working
-/// directory.
-fn path_from(folder: &Path, file: &Path) -> PathBuf {
-    if file.is_absolute() {
-        return file.to_owned();
-    }
-    let below = folder.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    if !below {
-        return std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    }
-    let depth = folder.components().filter(|part| matches!(part, Component::Normal(_))).count();
-    std::iter::repeat_n("..", depth).collect::<PathBuf>().join(file)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{given, path_from, word};
-    use crate::commands::diagnose::arguments::Reading;
-    use std::path::{Path, PathBuf};
-
-    #[test]
-    fn options_that_were_given_are_given_again() {
-        let reading = Reading {
-            value: Some("phi 2".to_owned()),
-            filter: Some("joint=elbow".to_owned()),
-            remove_mean: true,
-            sample_rate: Some(50.0),
-            ..Reading::default()
-        };
-        assert_eq!(given(&Reading::default()), "");
-        assert_eq!(given(&reading), " --value 'phi 2' --where joint=elbow --sample-rate 50.0 --remove-mean");
-    }
-
-    #[test]
-    fn words_are_safe_in_a_shell() {
-        assert_eq!(word("a/b.csv"), "a/b.csv");
-        assert_eq!(word("it's $5"), r"'it'\''s $5'");
-    }
-
-    #[test]
-    fn the_way_back_to_the_log_is_found() {
-        assert_eq!(path_from(Path::new("rig/a"), Path::new("logs/x.csv")), PathBuf::from("../../logs/x.csv"));
-        assert!(path_from(Path::new("../rig"), Path::new("x.csv")).is_absolute());
-    }
 }
