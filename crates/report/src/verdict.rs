@@ -32,17 +32,37 @@ pub(crate) struct Verdict {
     pub(crate) sentence: String,
 }
 
+/// Coefficient of determination below which agreement with least squares says little about the damping.
+const LINE: f64 = 0.9;
+
 pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     let who = in_a_sentence(&result.estimator_title);
     let zeta =
         format::with_uncertainty(result.estimate.zeta, result.estimate.zeta_std_error.unwrap_or(f64::NAN));
     let comparison = comparison(result);
+    let is_line = result.oracle.r_squared >= LINE;
     let steps = format::count(result.steps);
     match result.estimate.reached {
         Reached::Converged => Verdict {
-            tone: if result.pass { Tone::Good } else { Tone::Bad },
-            label: if result.pass { "Within tolerance" } else { "Outside tolerance" },
-            sentence: format!("The {who} finds a damping ratio of {zeta}; it {comparison}."),
+            tone: match (result.pass, is_line) {
+                (true, true) => Tone::Good,
+                (true, false) => Tone::Caution,
+                (false, _) => Tone::Bad,
+            },
+            label: match (result.pass, is_line) {
+                (true, true) => "Within tolerance",
+                (true, false) => "Within tolerance, no clear decay",
+                (false, _) => "Outside tolerance",
+            },
+            sentence: if is_line {
+                format!("The {who} finds a damping ratio of {zeta}; it {comparison}.")
+            } else {
+                format!(
+                    "The {who} finds a damping ratio of {zeta}; it {comparison}. But least squares itself explains little of \
+                     the envelope (R² {}): one damping ratio hardly describes this record.",
+                    format::fixed(result.oracle.r_squared, 2)
+                )
+            },
         },
         Reached::BudgetSpent => Verdict {
             tone: if result.pass { Tone::Caution } else { Tone::Bad },
@@ -266,6 +286,16 @@ mod tests {
             text.ends_with("by 2.3 %, so it does not solve least squares to the stated 0.1 %."),
             "{text}"
         );
+    }
+
+    /// Regression: agreement on a line through nothing was shown in green.
+    #[test]
+    fn agreement_on_a_poor_line_is_no_success() {
+        let mut result = Sample::new().result;
+        assert_eq!(verdict(&result).tone, Tone::Good);
+        result.oracle.r_squared = 0.2;
+        assert_eq!(verdict(&result).tone, Tone::Caution);
+        assert!(verdict(&result).sentence.contains("R² 0.20"), "{}", verdict(&result).sentence);
     }
 
     #[test]

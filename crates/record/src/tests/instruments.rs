@@ -46,7 +46,8 @@ fn a_single_column_has_no_separator_and_no_header() {
 /// Regression: angles in radians that wrap, of more than a turn, were refused as degrees by a diagnosis.
 #[test]
 fn angles_that_wrap_after_a_turn_of_their_unit_are_not_doubted() {
-    let wrapped = |angle: f64| (30.0 * angle + 3.14159).rem_euclid(std::f64::consts::TAU) - 3.14159;
+    let half = std::f64::consts::PI;
+    let wrapped = |angle: f64| (30.0 * angle + half).rem_euclid(2.0 * half) - half;
     let text: String = (0..3000)
         .map(|at| 0.01 * f64::from(at))
         .map(|time| format!("{time:.2},{:.5}\n", wrapped((-0.02 * time).exp() * (2.0 * time).cos())))

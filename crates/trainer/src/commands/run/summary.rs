@@ -328,9 +328,15 @@ fn pipelines(pipelines: &[PipelineRow]) -> String {
         "closed-form least squares on the record, by pipeline and clock (* in force):\n{}",
         table(&header, rows)
     );
+    let mut told: Vec<(&str, &str)> = Vec::new();
     for row in pipelines {
-        if let PipelineOutcome::Failed { reason } = &row.outcome {
-            text.push_str(&format!("\n{}, {}: {reason}", row.pipeline, row.clock));
+        let PipelineOutcome::Failed { reason } = &row.outcome else { continue };
+        // Advice on pipelines that are not in force helps nobody, and the clocks fail alike.
+        let (reason, _) = reason.split_once(". ").unwrap_or((reason, ""));
+        let failed = (row.pipeline.as_str(), reason.trim_end_matches('.'));
+        if !told.contains(&failed) {
+            told.push(failed);
+            text.push_str(&format!("\n{}: none, since {}", failed.0, failed.1));
         }
     }
     text
