@@ -2,7 +2,7 @@
 
 use crate::Repaired;
 use crate::configuration::one_line;
-use crate::terms::JointTerms;
+use crate::terms::{JointTerms, SecondBody};
 use dynamics::{Coordinate, Units};
 use std::fmt::Write;
 
@@ -58,28 +58,32 @@ pub fn mjcf(repaired: &Repaired) -> String {
         );
     }
     let _ = writeln!(text, " armature=\"{armature:?}\"/>");
-    let (mut positions, mut velocities) =
-        (format!("{:?}", repaired.start.position), format!("{:?}", repaired.start.velocity));
-    if let Some(second) = &terms.second_body {
-        // Its center is on the axis of a hinge, where its weight turns nothing. Its joint deflects by ψ - θ.
-        let inertia = second.inertia;
-        let _ = writeln!(
-            text,
-            "      <body name=\"second_body\">\n        <inertial pos=\"0 0 0\" mass=\"{inertia:?}\" \
-             diaginertia=\"{inertia:?} {inertia:?} {inertia:?}\"/>\n        \
-             <joint name=\"coupling\" type=\"{kind}\" axis=\"{axis}\" damping=\"{:?}\" stiffness=\"{:?}\"/>\n      \
-             </body>",
-            second.damping, second.stiffness
-        );
-        let _ = write!(positions, " {:?}", second.start.0);
-        let _ = write!(velocities, " {:?}", second.start.1);
-    }
+    let start = terms.second_body.as_ref().map_or((0.0, 0.0), |second| second.start);
+    let state = |own: f64, second: f64| match terms.second_body {
+        Some(_) => format!("{own:?} {second:?}"),
+        None => format!("{own:?}"),
+    };
+    let positions = state(repaired.start.position, start.0);
+    let velocities = state(repaired.start.velocity, start.1);
+    text.extend(terms.second_body.iter().map(|second| second_body(second, kind, axis)));
     let _ = write!(
         text,
         "    </body>\n  </worldbody>\n  <keyframe>\n    \
          <key name=\"start\" qpos=\"{positions}\" qvel=\"{velocities}\"/>\n  </keyframe>\n</mujoco>\n"
     );
     text
+}
+
+/// Writes a second body on a joint within the first. Its center is on the axis of a hinge, where its weight turns
+/// nothing, and its joint deflects by ψ − θ.
+fn second_body(second: &SecondBody, kind: &str, axis: &str) -> String {
+    let SecondBody { inertia, stiffness, damping, .. } = second;
+    format!(
+        "      <body name=\"second_body\">\n        <inertial pos=\"0 0 0\" mass=\"{inertia:?}\" \
+         diaginertia=\"{inertia:?} {inertia:?} {inertia:?}\"/>\n        \
+         <joint name=\"coupling\" type=\"{kind}\" axis=\"{axis}\" damping=\"{damping:?}\" stiffness=\"{stiffness:?}\"/>\n      \
+         </body>\n"
+    )
 }
 
 /// Returns a thousandth of a period, but at most a millisecond.

@@ -40,30 +40,11 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     let zeta =
         format::with_uncertainty(result.estimate.zeta, result.estimate.zeta_std_error.unwrap_or(f64::NAN));
     let comparison = comparison(result);
-    let is_line = result.oracle.r_squared >= LINE;
     let steps = format::count(result.steps);
     match result.estimate.reached {
-        Reached::Converged => Verdict {
-            tone: match (result.pass, is_line) {
-                (true, true) => Tone::Good,
-                (true, false) => Tone::Caution,
-                (false, _) => Tone::Bad,
-            },
-            label: match (result.pass, is_line) {
-                (true, true) => "Within tolerance",
-                (true, false) => "Within tolerance, no clear decay",
-                (false, _) => "Outside tolerance",
-            },
-            sentence: if is_line {
-                format!("The {who} finds a damping ratio of {zeta}; it {comparison}.")
-            } else {
-                format!(
-                    "The {who} finds a damping ratio of {zeta}; it {comparison}. But least squares itself explains little of \
-                     the envelope (R² {}): one damping ratio hardly describes this record.",
-                    format::fixed(result.oracle.r_squared, 2)
-                )
-            },
-        },
+        Reached::Converged => {
+            converged(result, &format!("The {who} finds a damping ratio of {zeta}; it {comparison}."))
+        }
         Reached::BudgetSpent => Verdict {
             tone: if result.pass { Tone::Caution } else { Tone::Bad },
             label: if result.pass { "Within tolerance, not converged" } else { "Not converged" },
@@ -97,6 +78,26 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
             ),
         },
     }
+}
+
+/// Returns the verdict of an estimate that converged, from the sentence on its value.
+fn converged(result: &EstimationResult, sentence: &str) -> Verdict {
+    let r_squared = result.oracle.r_squared;
+    let (tone, label) = match (result.pass, r_squared < LINE) {
+        (true, false) => (Tone::Good, "Within tolerance"),
+        (true, true) => (Tone::Caution, "Within tolerance, no clear decay"),
+        (false, _) => (Tone::Bad, "Outside tolerance"),
+    };
+    let poor = if r_squared < LINE {
+        format!(
+            " But least squares itself explains little of the envelope (R² {}): one damping ratio hardly describes this \
+             record.",
+            format::fixed(r_squared, 2)
+        )
+    } else {
+        String::new()
+    };
+    Verdict { tone, label, sentence: format!("{sentence}{poor}") }
 }
 
 /// Returns the next steps after an estimation, by the state in which it ended.

@@ -108,55 +108,11 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
     let mut surest = looked.into_iter().next().ok_or_else(none)?;
     surest.look.source.findings.extend(left_out(log));
-    let Looked { path, reading, look, oscillator, .. } = &surest;
-    let coordinate = coordinate_of(look.source.reading.coordinate);
-    let name = path.display().to_string();
-    let nominal = (folder.join("nominal.toml"), files::nominal_toml(&name, oscillator, coordinate));
-    let (mut next, mut tried) = (Vec::new(), Vec::new());
-    let reading = Reading { remove_mean: bias || reading.remove_mean, ..reading.clone() };
-    if is_diagnosable(&surest) {
-        let (file, text) = &nominal;
-        match tried::diagnosis(log, (file, text), &reading.plain()) {
-            Ok(()) => next.push((
-                "what a linear oscillator with these numbers lacks",
-                format!(
-                    "trainer diagnose {} --nominal {}{}",
-                    path_word(log),
-                    path_word(file),
-                    given(&reading)
-                ),
-            )),
-            Err(refusal) => tried.push(format!("a diagnosis would refuse this record: {refusal}")),
-        }
-    }
-    let mut files = vec![("nominal.toml", nominal.1)];
-    // Only a free decay has an envelope from which a damping ratio can be estimated.
-    if oscillator.input_gain.is_none() {
-        let file = folder.join("estimate.toml");
-        let configuration =
-            |path: &Path| files::configuration(&path.display().to_string(), &options(&surest));
-        // The folder is not there yet, and a path out of it leads nowhere.
-        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
-        match tried::estimate(&file, &configuration(&absolute)) {
-            Ok(envelope) => {
-                tried.extend(damping::changing(&envelope.envelope));
-                files.push(("estimate.toml", configuration(&path_from(&folder, path))));
-                next.push((
-                    match envelope.because {
-                        Some(_) => "the damping ratio from the samples",
-                        None => "the damping ratio from the decay of the peaks",
-                    },
-                    format!("trainer {}", path_word(&file)),
-                ));
-            }
-            // A motion without a swing has its own remark.
-            Err(refusal) if surest.swings() => {
-                tried.push(format!("an estimate would refuse this record: {refusal}"));
-            }
-            Err(_) => {}
-        }
-    }
-    Ok(Found { surest, each, coordinate, folder, tried, files, next })
+    let coordinate = coordinate_of(surest.look.source.reading.coordinate);
+    let (files, next, tried) = (Vec::new(), Vec::new(), Vec::new());
+    Ok(Found { surest, each, coordinate, folder, tried, files, next }
+        .with_diagnosis(log, bias)
+        .with_estimate())
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
@@ -217,6 +173,62 @@ fn apart(each: &[EachLog]) -> Option<String> {
 }
 
 impl Found {
+    /// Adds `nominal.toml`, and the diagnosis with it or its refusal.
+    fn with_diagnosis(mut self, log: &Path, bias: bool) -> Self {
+        let Looked { path, reading, oscillator, .. } = &self.surest;
+        let file = self.folder.join("nominal.toml");
+        let text = files::nominal_toml(&path.display().to_string(), oscillator, self.coordinate);
+        if is_diagnosable(&self.surest) {
+            let reading = Reading { remove_mean: bias || reading.remove_mean, ..reading.clone() };
+            match tried::diagnosis(log, (&file, &text), &reading.plain()) {
+                Ok(()) => self.next.push((
+                    "what a linear oscillator with these numbers lacks",
+                    format!(
+                        "trainer diagnose {} --nominal {}{}",
+                        path_word(log),
+                        path_word(&file),
+                        given(&reading)
+                    ),
+                )),
+                Err(refusal) => self.tried.push(format!("a diagnosis would refuse this record: {refusal}")),
+            }
+        }
+        self.files.push(("nominal.toml", text));
+        self
+    }
+
+    /// Adds `estimate.toml` and the estimate with it, or its refusal. Only a free decay has an envelope from which a
+    /// damping ratio can be estimated.
+    fn with_estimate(mut self) -> Self {
+        let Looked { path, oscillator, .. } = &self.surest;
+        if oscillator.input_gain.is_some() {
+            return self;
+        }
+        let file = self.folder.join("estimate.toml");
+        let configuration =
+            |path: &Path| files::configuration(&path.display().to_string(), &options(&self.surest));
+        // The folder is not there yet, and a path out of it leads nowhere.
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        match tried::estimate(&file, &configuration(&absolute)) {
+            Ok(envelope) => {
+                let what = match envelope.because {
+                    Some(_) => "the damping ratio from the samples",
+                    None => "the damping ratio from the decay of the peaks",
+                };
+                let text = configuration(&path_from(&self.folder, path));
+                self.files.push(("estimate.toml", text));
+                self.next.push((what, format!("trainer {}", path_word(&file))));
+                self.tried.extend(damping::changing(&envelope.envelope));
+            }
+            // A motion without a swing has its own remark.
+            Err(refusal) if self.surest.swings() => {
+                self.tried.push(format!("an estimate would refuse this record: {refusal}"));
+            }
+            Err(_) => {}
+        }
+        self
+    }
+
     fn json(&self) -> Value {
         let number = |estimated: Option<Estimated>| {
             estimated.map(|found| json!({ "value": found.value, "std_error": found.std_error }))
