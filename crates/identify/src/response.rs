@@ -63,6 +63,8 @@ const DAMPINGS: [f64; 2] = [0.1, 0.5];
 const UNEXPLAINED: f64 = 0.8;
 /// Deviation from rest, in standard deviations of the noise, from which something moves.
 const AT_REST: f64 = 6.0;
+/// Ratio of the mean squares that two fits leave, from which the part that the second leaves out is no part of the motion.
+const BETTER: f64 = 2.0;
 /// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
 /// of 1.
 const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
@@ -78,7 +80,7 @@ pub(crate) fn driven(
     let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value.max(0.0)]);
     let (slowest, fastest) = (SLOWEST / clock.duration_s(), FASTEST * clock.sample_rate_hz);
     let fits = [true, false].map(|kept| {
-        let problem = Problem::new(record, clock, &pushes, kept);
+        let problem = Problem::new(record, clock, (&pushes, kept), 0);
         let grid = (0..GRID).flat_map(|number| {
             let omega = slowest * (fastest / slowest).powf(f64::from(number) / f64::from(GRID - 1));
             DAMPINGS.map(|ratio| [omega * omega, 2.0 * ratio * omega])
@@ -101,10 +103,20 @@ pub(crate) fn returning<'a>(
     clock: &Clock,
     guesses: impl IntoIterator<Item = &'a LinearOscillator>,
 ) -> Option<LinearOscillator> {
-    let problem = Problem::new(record, clock, &[], false);
     let creeping = CREEPING.map(|omega| omega / clock.duration_s()).map(|omega| [omega * omega, 2.0 * omega]);
     let guesses = guesses.into_iter().map(|guess| [guess.stiffness.value, guess.damping.value]);
-    sprung(nearest(guesses.chain(creeping).filter_map(|start| problem.fitted(start))), record)
+    let starts: Vec<[f64; 2]> = guesses.chain(creeping).collect();
+    let fit = |from: usize| {
+        let problem = Problem::new(record, clock, (&[], false), from);
+        let found = nearest(starts.iter().filter_map(|start| problem.fitted(*start)))?;
+        Some((found.0 / problem.samples as f64, found))
+    };
+    let whole = fit(0);
+    // The first samples after a release tell the faster of two decays: they are left out only if they are no part of it.
+    let after = Some(held(record)).filter(|held| *held > 0).and_then(fit);
+    let is_after = |square: f64| whole.as_ref().is_none_or(|(of_whole, _)| *of_whole > BETTER * square);
+    let found = after.filter(|(square, _)| is_after(*square)).or(whole);
+    sprung(found.map(|(_, found)| found), record)
 }
 
 /// Returns the number of samples at the beginning of a record in which nothing moves: those before two in a row that
@@ -189,10 +201,10 @@ impl State {
 }
 
 impl Problem {
-    fn new(record: &Record, clock: &Clock, pushes: &[(f64, f64)], kept: bool) -> Self {
-        let held = if pushes.is_empty() { held(record) } else { 0 };
+    /// Takes the samples from a number on; `kept` is `true` if an input stays between its samples.
+    fn new(record: &Record, clock: &Clock, (pushes, kept): (&[(f64, f64)], bool), from: usize) -> Self {
         let samples: Vec<(f64, f64)> =
-            clock.times_s.iter().copied().zip(record.values().iter().copied()).skip(held).collect();
+            clock.times_s.iter().copied().zip(record.values().iter().copied()).skip(from).collect();
         let at: Vec<(f64, f64)> = if pushes.is_empty() {
             samples.iter().map(|(time, _)| (*time, 0.0)).collect()
         } else {
