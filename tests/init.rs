@@ -222,7 +222,7 @@ fn a_folder_that_is_none_of_logs_is_refused() {
     for line in ["trainer init empty", "trainer diagnose empty --nominal nominal.toml"] {
         refused(
             line,
-            "empty: holds no log: no file in it has one of the endings .csv, .tsv, .lvm, .npy, .npz, .wav, .txt,",
+            "empty: holds no log: no file in it has one of the endings .csv, .tsv, .lvm, .npy, .npz, .mat, .wav, .txt,",
         );
     }
     std::fs::create_dir_all(scratch.path().join("day/morning")).unwrap();

@@ -276,12 +276,25 @@ pub struct RepairedSimulator {
     pub nominal: Nominal,
     /// Effects of the nominal simulator, then those that it lacked.
     pub effects: Vec<Active>,
+    /// Fitted state at the first sample of the first record; `None` if the fit does not hold that sample.
+    pub start: Option<StartState>,
     /// Numbers that the data do not determine.
     pub undetermined: Vec<Undetermined>,
     /// Behavior of a measured input between its samples, as believed in the fits; `None` without an input.
     pub input_hold: Option<Hold>,
     /// Effects that cannot be part of it, each with the reason.
     pub left_out: Vec<(&'static str, String)>,
+}
+
+/// State of a system, its hidden bodies included, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StartState {
+    /// Position.
+    pub position: f64,
+    /// Velocity.
+    pub velocity: f64,
+    /// Fitted hidden states by the id of their effect, in its order; effects without an entry are relaxed.
+    pub hidden: Vec<(&'static str, Vec<f64>)>,
 }
 
 /// Pair of explanations on these data.

@@ -67,7 +67,7 @@ mod trials;
 pub use answer::{
     Budget, Calibrated, Cell, ClassEvidence, Detectability, Diagnosis, EffectClass, EffectProbability,
     Experiment, Finding, Gap, Interval, Kind, KnownRow, LeftOver, MeasuringChain, ParameterEstimate,
-    RepairedSimulator, Rivalry, Series, SetScore, Stage, Status, Undetermined, Verdict, Where,
+    RepairedSimulator, Rivalry, Series, SetScore, Stage, StartState, Status, Undetermined, Verdict, Where,
 };
 pub use data::observations::Observations;
 pub use diagnose::{diagnose, diagnose_watched};
@@ -75,7 +75,7 @@ pub use error::DiagnosisError;
 pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};
 pub use explain::repaired::rounded;
 pub use explain::single_effect::single_effect;
-pub use model::vocabulary::{evidence_class, has_fitted_hidden_start, is_flexible};
+pub use model::vocabulary::{evidence_class, is_flexible};
 pub use residual::floor::NoiseFloor;
 pub use sets::weights::DISTINCT_DISTANCE;
 pub use settings::Settings;

@@ -36,6 +36,16 @@ pub enum Joint {
     Friction(&'static str),
     /// Shift of the relaxed spring by this torque over the stiffness.
     SpringShift(&'static str),
+    /// Second body on the first, with a joint of its own of these parameters, whose two hidden states are the
+    /// position and the velocity of that body.
+    SecondBody {
+        /// Inertia of the body.
+        inertia: &'static str,
+        /// Stiffness of its joint.
+        stiffness: &'static str,
+        /// Damping of its joint.
+        damping: &'static str,
+    },
     /// Weight of a mass with this torque when held level, at this angle from hanging straight down.
     Weight {
         /// Weight times lever arm.

@@ -29,7 +29,7 @@ pub use learning::{
 pub use nominal::{
     KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, Servo, StatedNominal, resolve_nominal,
 };
-pub use pipelines::{EnvelopeSettings, Pipeline, envelope_by_default};
+pub use pipelines::{EnvelopeSettings, Pipeline};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
     is_prediction, resolve_prediction,

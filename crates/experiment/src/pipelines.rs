@@ -73,14 +73,6 @@ impl EnvelopeSettings {
     }
 }
 
-/// Extracts the envelope of a record as a configuration does that sets nothing.
-///
-/// # Errors
-/// The pipeline's error.
-pub fn envelope_by_default(record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
-    chosen(&RecommendedPipeline::DEFAULT, &SamplesPipeline::DEFAULT, record, clock)
-}
-
 /// Finds peaks, or fits the samples of a free decay whose peaks are few or mix several modes.
 fn chosen(
     recommended: &RecommendedPipeline,

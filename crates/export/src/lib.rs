@@ -20,6 +20,7 @@
 //!     left_out: Vec::new(),
 //!     input: None,
 //!     start: Start::release(0.7),
+//!     hidden_starts: Vec::new(),
 //!     observed: Observed::Position,
 //!     noise: 5e-4,
 //!     rate_hz: 130.0,

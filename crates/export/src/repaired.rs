@@ -18,6 +18,9 @@ pub struct Repaired {
     pub input: Option<Hold>,
     /// Initial state of the first record.
     pub start: Start,
+    /// Hidden states at that start, in the order of the effect's hidden states, by the effect's id. Effects that
+    /// are not listed start relaxed and move along.
+    pub hidden_starts: Vec<(&'static str, Vec<f64>)>,
     /// Quantity that the sensor observes.
     pub observed: Observed,
     /// Standard deviation of the sensor's white noise, in the unit of [`observed`](Self::observed).
@@ -33,6 +36,11 @@ impl Repaired {
     #[must_use]
     pub fn driven(&self) -> bool {
         self.input.is_some()
+    }
+
+    /// Returns the hidden states of an effect at the start, if they are known.
+    pub(crate) fn hidden_start(&self, id: &str) -> Option<&[f64]> {
+        self.hidden_starts.iter().find(|(own, _)| *own == id).map(|(_, states)| states.as_slice())
     }
 
     /// Returns the symbol of a quantity's unit; for the observed quantity it follows from

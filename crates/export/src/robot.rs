@@ -2,16 +2,16 @@
 
 use crate::Repaired;
 use crate::configuration::one_line;
-use crate::terms::JointTerms;
+use crate::terms::{JointTerms, SecondBody};
 use dynamics::{Coordinate, Units};
 use std::fmt::Write;
 
 /// Gravitational acceleration of the model, in m/s².
 const GRAVITY: f64 = 9.81;
 
-/// Writes a MuJoCo model of one body on one joint with damping, stiffness, springref and frictionloss. The
-/// armature holds the inertia that the mass hanging on the joint does not have. Effects that no attribute of
-/// a joint can express are stated in a comment.
+/// Writes a MuJoCo model of one body on one joint with damping, stiffness, springref and frictionloss, and of a
+/// second body on a joint of its own if there is one. The armature holds the inertia that the mass hanging on
+/// the joint does not have. Effects that no attribute of a joint can express are stated in a comment.
 #[must_use]
 pub fn mjcf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -57,13 +57,33 @@ pub fn mjcf(repaired: &Repaired) -> String {
             2.0 * timestep(repaired)
         );
     }
+    let _ = writeln!(text, " armature=\"{armature:?}\"/>");
+    let start = terms.second_body.as_ref().map_or((0.0, 0.0), |second| second.start);
+    let state = |own: f64, second: f64| match terms.second_body {
+        Some(_) => format!("{own:?} {second:?}"),
+        None => format!("{own:?}"),
+    };
+    let positions = state(repaired.start.position, start.0);
+    let velocities = state(repaired.start.velocity, start.1);
+    text.extend(terms.second_body.iter().map(|second| second_body(second, kind, axis)));
     let _ = write!(
         text,
-        " armature=\"{armature:?}\"/>\n    </body>\n  </worldbody>\n  <keyframe>\n    \
-         <key name=\"start\" qpos=\"{:?}\" qvel=\"{:?}\"/>\n  </keyframe>\n</mujoco>\n",
-        repaired.start.position, repaired.start.velocity
+        "    </body>\n  </worldbody>\n  <keyframe>\n    \
+         <key name=\"start\" qpos=\"{positions}\" qvel=\"{velocities}\"/>\n  </keyframe>\n</mujoco>\n"
     );
     text
+}
+
+/// Writes a second body on a joint within the first. Its center is on the axis of a hinge, where its weight turns
+/// nothing, and its joint deflects by ψ − θ.
+fn second_body(second: &SecondBody, kind: &str, axis: &str) -> String {
+    let SecondBody { inertia, stiffness, damping, .. } = second;
+    format!(
+        "      <body name=\"second_body\">\n        <inertial pos=\"0 0 0\" mass=\"{inertia:?}\" \
+         diaginertia=\"{inertia:?} {inertia:?} {inertia:?}\"/>\n        \
+         <joint name=\"coupling\" type=\"{kind}\" axis=\"{axis}\" damping=\"{damping:?}\" stiffness=\"{stiffness:?}\"/>\n      \
+         </body>\n"
+    )
 }
 
 /// Returns a thousandth of a period, but at most a millisecond.
@@ -97,6 +117,14 @@ pub fn urdf(repaired: &Repaired) -> String {
         terms.left_out.push(format!(
             "the weight, which follows from the link's mass and center: {torque:?} held level, hanging straight down \
              {angle:?} rad before position 0"
+        ));
+    }
+    if let Some(second) = &terms.second_body {
+        let (deflection, rate) = second.start;
+        terms.left_out.push(format!(
+            "the second body, which needs a link and a joint with a spring: inertia {:?}, stiffness {:?}, damping {:?}; \
+             at the start its joint is deflected by {deflection:?} and moves at {rate:?}",
+            second.inertia, second.stiffness, second.damping
         ));
     }
     let (kind, limit) = match nominal.coordinate() {

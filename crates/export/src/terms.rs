@@ -84,11 +84,13 @@ impl Terms {
                 comment: format!("{}, {}", repaired.unit(parameter.quantity), parameter.meaning),
             });
         }
-        for state in export.states {
+        let known = repaired.hidden_start(description.id);
+        for (at, state) in export.states.iter().enumerate() {
+            let known = known.and_then(|known| known.get(at));
             self.states.push(State {
                 name: own(description, state.name),
                 rate: filled(state.rate, description),
-                start: state.start.to_owned(),
+                start: known.map_or_else(|| state.start.to_owned(), |value| format!("{value:?}")),
             });
         }
         if let Some(expression) = export.torque {
@@ -156,14 +158,29 @@ pub(crate) struct JointTerms {
     pub(crate) rest: f64,
     /// Weight times lever arm, and the angle from hanging straight down.
     pub(crate) weight: Option<(f64, f64)>,
+    pub(crate) second_body: Option<SecondBody>,
     pub(crate) left_out: Vec<String>,
+}
+
+/// Body on a joint of its own upon the first body.
+pub(crate) struct SecondBody {
+    pub(crate) inertia: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    /// Deflection of its joint at the start, and the rate of the deflection.
+    pub(crate) start: (f64, f64),
 }
 
 impl JointTerms {
     pub(crate) fn of(repaired: &Repaired) -> Self {
         let nominal = repaired.system.nominal();
-        let mut terms =
-            Self { friction: None, rest: nominal.rest_angle(), weight: None, left_out: left_out(repaired) };
+        let mut terms = Self {
+            friction: None,
+            rest: nominal.rest_angle(),
+            weight: None,
+            second_body: None,
+            left_out: left_out(repaired),
+        };
         for active in repaired.system.effects() {
             let Effect::System(effect) = active.effect() else { continue };
             let value = |name: &str| active.value(name);
@@ -175,6 +192,20 @@ impl JointTerms {
                 Joint::Weight { torque, angle } if nominal.coordinate() == dynamics::Coordinate::Angle => {
                     let weight = value(torque).filter(|torque| *torque > 0.0).zip(value(angle));
                     weight.map(|weight| terms.weight = Some(weight))
+                }
+                Joint::SecondBody { inertia, stiffness, damping } => {
+                    let start = match repaired.hidden_start(active.id()) {
+                        Some([position, velocity, ..]) => {
+                            (position - repaired.start.position, velocity - repaired.start.velocity)
+                        }
+                        // Relaxed: it moves along.
+                        _ => (0.0, 0.0),
+                    };
+                    value(inertia).zip(value(stiffness).zip(value(damping))).map(
+                        |(inertia, (stiffness, damping))| {
+                            terms.second_body = Some(SecondBody { inertia, stiffness, damping, start });
+                        },
+                    )
                 }
                 _ => None,
             };

@@ -13,6 +13,7 @@ fn repaired(nominal: Nominal, effects: &[(&str, &[f64])]) -> Repaired {
         left_out: Vec::new(),
         input: None,
         start: Start::release(0.5),
+        hidden_starts: Vec::new(),
         observed: Observed::Position,
         noise: 1e-3,
         rate_hz: 260.0,

@@ -15,6 +15,7 @@
 
 use dynamics::chain::Observed;
 use dynamics::reference::{Tolerance, simulate};
+use dynamics::sensitivity::{FullState, Model, Settings};
 use dynamics::{Active, Effect, Hold, Input, Nominal, REGISTRY, Start, System, UNNAMED};
 use export::{Repaired, mjcf, modelica, python, urdf};
 use std::process::Command;
@@ -70,6 +71,7 @@ fn of_size(size: f64, effects: &[(&str, &[f64])]) -> Repaired {
         left_out: Vec::new(),
         input: effects.iter().any(|(id, _)| is_driven(id)).then_some(Hold::Zero),
         start: Start { position: 0.5, velocity: 1.0 },
+        hidden_starts: Vec::new(),
         observed: Observed::Position,
         noise: 0.0,
         rate_hz: RATE,
@@ -168,8 +170,10 @@ fn the_python_function_moves_as_our_own_simulation_does() {
         let name = folder.join(format!("case_{index:02}.py"));
         std::fs::write(name, python(&repaired(case))).unwrap();
     }
+    std::fs::write(folder.join("hidden.py"), python(&beating())).unwrap();
     let Some(found) = run(SCIPY, &folder, "import scipy.integrate") else { return };
-    assert_eq!(found.len(), cases.len());
+    assert_eq!(found.len(), cases.len() + 1);
+    holds_both_modes(found.last().unwrap());
     let bare = own(&repaired(&[]));
     for (case, found) in cases.iter().zip(&found) {
         let own = own(&repaired(case));
@@ -185,12 +189,31 @@ fn the_python_function_moves_as_our_own_simulation_does() {
     }
 }
 
+/// Returns a swing whose second body moves against it at the start.
+fn beating() -> Repaired {
+    let coupling = ("flexible_coupling", &[5e-5, 0.02, 2e-6][..]);
+    Repaired { hidden_starts: vec![("flexible_coupling", vec![-0.4, 2.0])], ..repaired(&[coupling]) }
+}
+
+/// Asserts that a motion is that of both bodies from their own starts, by the other of our integrators.
+fn holds_both_modes(found: &[f64]) {
+    let repaired = beating();
+    let mut model = Model::new(&repaired.system, &[], Settings::default()).unwrap();
+    let (along, mut hidden) = (FullState::from(repaired.start), [0.0; dynamics::SYSTEM_HIDDEN]);
+    (hidden[0], hidden[1]) = (-0.4, 2.0);
+    let own = model.run(FullState { hidden: Some(hidden), ..along }, None, &times()).unwrap().position;
+    assert!(distance(found, &own) < 0.01, "{}", distance(found, &own));
+    let relaxed = model.run(along, None, &times()).unwrap().position;
+    assert!(distance(&relaxed, &own) > 0.1, "the start of the second body matters");
+}
+
 #[test]
 fn the_mujoco_joint_moves_as_our_own_simulation_does() {
     let folder = scratch("mujoco");
     let all = ["coulomb_friction", "gravity", "constant_torque"].map(case);
     let [friction, gravity, constant] = all;
-    let cases: [&[(&str, &[f64])]; 5] = [&[], &[friction], &[gravity], &[constant], &all];
+    let coupling = [case("flexible_coupling")];
+    let cases: [&[(&str, &[f64])]; 6] = [&[], &[friction], &[gravity], &[constant], &all, &coupling];
     for (index, case) in cases.iter().enumerate() {
         let name = folder.join(format!("case_{index:02}.xml"));
         let text = mjcf(&repaired(case));
@@ -198,10 +221,12 @@ fn the_mujoco_joint_moves_as_our_own_simulation_does() {
         std::fs::write(name, text).unwrap();
     }
     // A balance wheel and a smaller body: MuJoCo refuses bodies of less than 1e-15.
-    std::fs::write(folder.join("case_05.xml"), mjcf(&of_size(1e-6, &[]))).unwrap();
-    std::fs::write(folder.join("case_06.xml"), mjcf(&of_size(1e-9, &[]))).unwrap();
+    std::fs::write(folder.join("case_06.xml"), mjcf(&of_size(1e-6, &[]))).unwrap();
+    std::fs::write(folder.join("case_07.xml"), mjcf(&of_size(1e-9, &[]))).unwrap();
+    std::fs::write(folder.join("hidden.xml"), mjcf(&beating())).unwrap();
     let Some(found) = run(MUJOCO, &folder, "import mujoco") else { return };
-    assert_eq!(found.len(), cases.len() + 2);
+    assert_eq!(found.len(), cases.len() + 3);
+    holds_both_modes(found.last().unwrap());
     for (case, found) in cases.iter().chain([&cases[0]; 2]).zip(&found) {
         let off = distance(found, &own(&repaired(case)));
         assert!(off < 0.01, "{case:?}: {off}");
@@ -214,7 +239,9 @@ fn what_a_joint_cannot_hold_is_said_and_never_dropped() {
         let repaired = repaired(&[(id, values)]);
         let title = Effect::find(id).unwrap().description().title;
         for text in [mjcf(&repaired), urdf(&repaired)] {
-            let held = text.contains("frictionloss") || ["constant_torque", "gravity"].contains(id);
+            let held = text.contains("frictionloss") || text.contains("second_body");
+            let held = held || ["constant_torque", "gravity"].contains(id);
+            let title = if *id == "flexible_coupling" { "the second body" } else { title };
             let friction = text.contains("friction=\"0.0006\"");
             assert!(held || friction || text.contains(&format!("Not part of it: {title}")), "{text}");
         }

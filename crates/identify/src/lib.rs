@@ -46,34 +46,42 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
         .as_ref()
         .and_then(LinearOscillator::natural_frequency_hz)
         .is_some_and(|frequency| clock.sample_rate_hz < MANY_PER_PERIOD * frequency.value);
-    let samples = if free && (is_coarse || !peaks.as_ref().is_some_and(is_well_known)) {
+    // The scatter of so few tells no error.
+    let are_few = peaks.is_some_and(|peaks| matches!(peaks.basis, Basis::TurningPoints(..FEW)));
+    let needs_samples = is_coarse || are_few;
+    let samples = if free && (needs_samples || !peaks.as_ref().is_some_and(is_well_known)) {
         SamplesPipeline::DEFAULT.oscillator(record, clock).ok()
     } else {
         None
     };
-    match (peaks, samples) {
-        (Some(peaks), Some(samples))
-            if !is_coarse && peaks.damping.std_error < TIGHTER * samples.damping.std_error =>
-        {
-            Ok(peaks)
-        }
-        (_, Some(samples)) if samples.damping_ratio().is_some_and(|ratio| ratio.value > FEW_CYCLES) => {
-            Ok(response::returning(record, clock, Some(&samples)).unwrap_or(samples))
-        }
-        (_, Some(samples)) => Ok(samples),
-        (Some(peaks), None) => Ok(peaks),
-        (None, None) => {
-            let guess = weak::oscillator(record, clock);
-            let fit = if free { response::returning } else { response::driven };
-            fit(record, clock, guess.as_ref().ok()).map_or(guess, Ok)
-        }
+    let is_tighter = |peaks: &LinearOscillator| {
+        !needs_samples
+            && samples.is_none_or(|samples| peaks.damping.std_error < TIGHTER * samples.damping.std_error)
+    };
+    if let Some(peaks) = peaks.filter(is_tighter) {
+        return Ok(peaks);
     }
+    if let Some(best) = samples.or(peaks) {
+        let is_short = best.damping_ratio().is_some_and(|ratio| ratio.value > FEW_CYCLES);
+        let guesses = || samples.iter().chain(&peaks);
+        let found = if is_short { response::returning(record, clock, guesses()) } else { None };
+        return Ok(found.unwrap_or(best));
+    }
+    let guess = weak::oscillator(record, clock);
+    let near = guess.as_ref().ok();
+    let found = match free {
+        true => response::returning(record, clock, near),
+        false => response::driven(record, clock, near),
+    };
+    found.map_or(guess, Ok)
 }
 
 /// Damping ratio above which a free decay is over in few cycles, and a response is fitted to all of it.
 const FEW_CYCLES: f64 = 0.2;
 /// Standard errors of a damping ratio, relative and absolute, below which turning points need no help.
 const WELL_KNOWN: (f64, f64) = (0.05, 1e-4);
+/// Number of turning points below which samples are believed.
+const FEW: usize = 8;
 /// Samples per period that turning points need.
 const MANY_PER_PERIOD: f64 = 8.0;
 /// Ratio of standard errors from which on the samples are believed and not the turning points.

@@ -89,15 +89,29 @@ mod tests {
     use seed::Seed;
 
     fn part(motion: impl Fn(f64) -> f64) -> Option<[f64; 2]> {
+        part_of(Quantity::Position, motion)
+    }
+
+    fn part_of(quantity: Quantity, motion: impl Fn(f64) -> f64) -> Option<[f64; 2]> {
         let times: Vec<f64> = (0..4000).map(|at| 0.01 * f64::from(at)).collect();
         let (mut draws, normal) = (Seed::new(5).child("noise").generator(), Normal::new(0.0, 1e-3).unwrap());
         let values = times.iter().map(|time| motion(*time) + normal.sample(&mut draws)).collect();
-        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let record = Record::new(times, values, None, quantity, "rad").unwrap();
         regular_part(&record, &Clock::new(&record, ClockChoice::Auto).unwrap())
     }
 
     fn decay(time: f64) -> f64 {
         (-0.04 * time).exp() * (6.0 * time).cos()
+    }
+
+    /// Regression: the hand's own frequencies hid the swing's period in the first guess, and nothing was seen.
+    #[test]
+    fn a_hand_with_frequencies_of_its_own_is_seen() {
+        let moved = |time: f64| (2.7 * time).sin() + (8.3 * time + 1.0).cos();
+        let free = |time: f64| (-0.012 * time).exp() * (4.3 * time).cos();
+        let both = |time: f64| 0.12 * if time < 7.0 { moved(time) } else { free(time - 7.0) };
+        let found = part_of(Quantity::Velocity, both).unwrap();
+        assert!((6.5..10.0).contains(&found[0]) && found[1] > 37.0, "{found:?}");
     }
 
     #[test]

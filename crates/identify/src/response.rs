@@ -61,6 +61,10 @@ const GRID: u32 = 16;
 const DAMPINGS: [f64; 2] = [0.1, 0.5];
 /// Largest part of a record's variance that a response may leave.
 const UNEXPLAINED: f64 = 0.8;
+/// Deviation from rest, in standard deviations of the noise, from which something moves.
+const AT_REST: f64 = 6.0;
+/// Ratio of the mean squares that two fits leave, from which the part that the second leaves out is no part of the motion.
+const BETTER: f64 = 2.0;
 /// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
 /// of 1.
 const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
@@ -76,7 +80,7 @@ pub(crate) fn driven(
     let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value.max(0.0)]);
     let (slowest, fastest) = (SLOWEST / clock.duration_s(), FASTEST * clock.sample_rate_hz);
     let fits = [true, false].map(|kept| {
-        let problem = Problem::new(record, clock, &pushes, kept);
+        let problem = Problem::new(record, clock, (&pushes, kept), 0);
         let grid = (0..GRID).flat_map(|number| {
             let omega = slowest * (fastest / slowest).powf(f64::from(number) / f64::from(GRID - 1));
             DAMPINGS.map(|ratio| [omega * omega, 2.0 * ratio * omega])
@@ -92,17 +96,45 @@ pub(crate) fn driven(
     sprung(Some((rest, found)), record).filter(|_| is_linear || guess.is_none())
 }
 
-/// Fits a motion that returns to rest in a few cycles or without a swing, from a first guess and from others. `None` if
+/// Fits a motion that returns to rest in a few cycles or without a swing, from first guesses and from others. `None` if
 /// nothing pulls it back.
-pub(crate) fn returning(
+pub(crate) fn returning<'a>(
     record: &Record,
     clock: &Clock,
-    guess: Option<&LinearOscillator>,
+    guesses: impl IntoIterator<Item = &'a LinearOscillator>,
 ) -> Option<LinearOscillator> {
-    let problem = Problem::new(record, clock, &[], false);
     let creeping = CREEPING.map(|omega| omega / clock.duration_s()).map(|omega| [omega * omega, 2.0 * omega]);
-    let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value]);
-    sprung(nearest(guess.into_iter().chain(creeping).filter_map(|start| problem.fitted(start))), record)
+    let guesses = guesses.into_iter().map(|guess| [guess.stiffness.value, guess.damping.value]);
+    let starts: Vec<[f64; 2]> = guesses.chain(creeping).collect();
+    let fit = |from: usize| {
+        let problem = Problem::new(record, clock, (&[], false), from);
+        let found = nearest(starts.iter().filter_map(|start| problem.fitted(*start)))?;
+        Some((found.0 / problem.samples as f64, found))
+    };
+    let whole = fit(0);
+    // The first samples after a release tell the faster of two decays: they are left out only if they are no part of it.
+    let after = Some(held(record)).filter(|held| *held > 0).and_then(fit);
+    let is_after = |square: f64| whole.as_ref().is_none_or(|(of_whole, _)| *of_whole > BETTER * square);
+    let found = after.filter(|(square, _)| is_after(*square)).or(whole);
+    sprung(found.map(|(_, found)| found), record)
+}
+
+/// Returns the number of samples at the beginning of a record in which nothing moves: those before two in a row that
+/// differ from the mean of all before by more than the noise. 0 if they are more than half of it.
+fn held(record: &Record) -> usize {
+    let values = record.values();
+    let far = AT_REST * noise_level(values).max(record.quantum());
+    let mut sum = 0.0;
+    let mut beyond = 0;
+    let moved = values.iter().enumerate().position(|(at, value)| {
+        // The first sample is its own mean.
+        let mean = if at > 0 { sum / at as f64 } else { *value };
+        sum += value;
+        beyond = if (value - mean).abs() > far { beyond + 1 } else { 0 };
+        beyond == 2
+    });
+    // A record without motion begins with its first sample.
+    moved.map(|at| at - 1).filter(|held| 2 * held < values.len()).unwrap_or(0)
 }
 
 /// Returns the fit with the smallest residuals.
@@ -169,9 +201,10 @@ impl State {
 }
 
 impl Problem {
-    fn new(record: &Record, clock: &Clock, pushes: &[(f64, f64)], kept: bool) -> Self {
+    /// Takes the samples from a number on; `kept` is `true` if an input stays between its samples.
+    fn new(record: &Record, clock: &Clock, (pushes, kept): (&[(f64, f64)], bool), from: usize) -> Self {
         let samples: Vec<(f64, f64)> =
-            clock.times_s.iter().copied().zip(record.values().iter().copied()).collect();
+            clock.times_s.iter().copied().zip(record.values().iter().copied()).skip(from).collect();
         let at: Vec<(f64, f64)> = if pushes.is_empty() {
             samples.iter().map(|(time, _)| (*time, 0.0)).collect()
         } else {
@@ -387,6 +420,26 @@ mod tests {
             let frequency = found.natural_frequency_hz();
             assert!(frequency.is_none_or(|own| own.std_error > 0.03 * own.value), "{seed}: {found:?}");
         }
+    }
+
+    /// Regression: the rest before a step was fitted as motion, and its few turning points told the frequency to 1 %.
+    #[test]
+    fn a_step_after_a_rest_is_fitted_from_its_beginning() {
+        let (normal, mut draws) = (Normal::new(0.0, 5e-3).unwrap(), Seed::new(4).child("noise").generator());
+        let (zeta, omega) = (0.27, std::f64::consts::TAU);
+        let root = omega * (1.0_f64 - zeta * zeta).sqrt();
+        let step = |time: f64| {
+            let decay = (-zeta * omega * time).exp();
+            1.0 - decay * ((root * time).cos() + zeta * omega / root * (root * time).sin())
+        };
+        let times: Vec<f64> = (0..400).map(|at| 0.01 * f64::from(at)).collect();
+        let motion = |time: f64| if time < 0.7 { 0.0 } else { step(time - 0.7) };
+        let values = times.iter().map(|time| motion(*time) + normal.sample(&mut draws)).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let found = identify(&record, &Clock::new(&record, ClockChoice::Auto).unwrap()).unwrap();
+        let (frequency, ratio) = (found.natural_frequency_hz().unwrap(), found.damping_ratio().unwrap());
+        assert!((frequency.value - 1.0).abs() < 3e-3, "{frequency:?}");
+        assert!((ratio.value - zeta).abs() < 4.0 * ratio.std_error, "{ratio:?}");
     }
 
     #[test]

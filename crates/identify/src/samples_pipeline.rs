@@ -154,7 +154,9 @@ impl SamplesPipeline {
     /// Returns all windows of a period whose amplitude is clear, whether or not they belong to one free decay, with the
     /// noise of a sample.
     pub(crate) fn clear_windows(&self, record: &Record, clock: &Clock) -> Option<(Vec<Window>, f64)> {
-        let swing = Swing::guessed(record, clock).ok()?;
+        // A hand spoils the guess, but not the free decay from the largest amplitude on.
+        let fitted = self.fitted(record, clock).map(|(swing, _)| swing);
+        let swing = fitted.or_else(|_| Swing::guessed(record, clock)).ok()?;
         let (windows, _) = swing.windows(&clock.times_s, TAU / swing.omega);
         let noise = median(windows.iter().map(Window::scatter).collect())?;
         let is_clear =

@@ -12,17 +12,20 @@ pub(crate) struct Decoded {
     pub(crate) values: Vec<f64>,
     /// Name of the coding with its numbers, as a sentence.
     pub(crate) finding: String,
+    /// `true` if it wrapped after a turn of the column's unit, which confirms that unit.
+    pub(crate) is_turn: bool,
 }
 
 /// Number of bits of the counts that are looked for.
 const BITS: std::ops::RangeInclusive<u32> = 8..=32;
-/// Factor by which the largest step has to fall for a coding to be recognized.
+/// Factor by which the largest step, or the largest change from step to step, has to fall for a coding to be recognized.
 const CALMER: f64 = 4.0;
 /// Part of the range, from each end, in which a wrapped series has values.
 const NEAR_THE_END: f64 = 0.125;
 
 /// Undoes the coding of a series; `None` if its steps are no jumps. A coding is recognized if the largest
-/// step is nearly half the range of the code or more, and a quarter of that or less without the coding.
+/// step is nearly half the range of the code or more, and it, or the largest change from step to step, falls to a
+/// quarter or less without the coding.
 pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
     let plain = largest_step(values);
     let whole = values.iter().all(|value| value.fract() == 0.0);
@@ -32,7 +35,7 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
             "the values wrap: each jump by about {} was taken for a passage of the end of the range, and undone",
             (1e3 * period).round() / 1e3
         );
-        Some(Decoded { values, finding })
+        Some(Decoded { values, finding, is_turn: unit.is_some_and(|unit| period == TAU / unit.to_si()) })
     });
     let signs = BITS.filter(|_| whole).filter_map(|bits| {
         let half = f64::from(bits - 1).exp2();
@@ -40,9 +43,13 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
         let finding = format!(
             "the values jump by about {half} where they pass zero: sign and magnitude in {bits} bits, which was undone"
         );
-        Some(Decoded { values, finding })
+        Some(Decoded { values, finding, is_turn: false })
     });
-    let calm = |found: &Decoded| CALMER * largest_step(&found.values) <= plain;
+    // Quick motion of several turns has steps of half a turn as well, but changes them slowly.
+    let bend = largest_bend(values);
+    let calm = |found: &Decoded| {
+        CALMER * largest_step(&found.values) <= plain || CALMER * largest_bend(&found.values) <= bend
+    };
     let step = |found: &Decoded| largest_step(&found.values);
     turns.chain(signs).filter(calm).min_by(|one, other| step(one).total_cmp(&step(other)))
 }
@@ -50,6 +57,15 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
 /// Returns the largest absolute step of a series; 0 for one value.
 fn largest_step(values: &[f64]) -> f64 {
     values.iter().zip(values.iter().skip(1)).map(|(one, next)| (next - one).abs()).fold(0.0, f64::max)
+}
+
+/// Returns the largest absolute difference of two steps of a series in a row; 0 for two values.
+fn largest_bend(values: &[f64]) -> f64 {
+    let bend = |part: &[f64]| match part {
+        [one, middle, next] => (one - 2.0 * middle + next).abs(),
+        _ => f64::NAN,
+    };
+    values.windows(3).map(bend).fold(0.0, f64::max)
 }
 
 /// Returns the lengths of code after which a series may wrap, in its unit.
@@ -137,6 +153,20 @@ mod tests {
         let radians: Vec<f64> =
             swing(6.0, 1.0).iter().map(|value| value.rem_euclid(std::f64::consts::TAU)).collect();
         assert!(off(&decoded(&radians, Some(Unit::Radian)).unwrap().values, &swing(6.0, 1.0)) < 1e-9);
+    }
+
+    /// Regression: a swing of several turns, whose steps reach a third of a turn, was read with its jumps.
+    #[test]
+    fn quick_motion_of_several_turns_is_unwrapped() {
+        let motion = swing(0.0, 1200.0);
+        let wrapped: Vec<f64> =
+            motion.iter().map(|value| (value + 180.0).rem_euclid(360.0) - 180.0).collect();
+        assert!(off(&decoded(&wrapped, Some(Unit::Degree)).unwrap().values, &motion) < 1e-9);
+        // Of steps beyond half a turn nobody knows the direction.
+        let motion = swing(0.0, 4000.0);
+        let wrapped: Vec<f64> =
+            motion.iter().map(|value| (value + 180.0).rem_euclid(360.0) - 180.0).collect();
+        assert_eq!(decoded(&wrapped, Some(Unit::Degree)), None);
     }
 
     /// Steps that belong to the motion, a wrong value, and noise are left alone.

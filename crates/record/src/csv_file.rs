@@ -53,13 +53,13 @@ struct Chosen {
 }
 
 impl Samples {
-    /// Undoes the coding of the values; returns a sentence about it.
-    fn decode(&mut self, unit: Option<Unit>) -> Option<String> {
+    /// Undoes the coding of the values; returns a sentence about it, and `true` if it confirms the unit.
+    fn decode(&mut self, unit: Option<Unit>) -> Option<(String, bool)> {
         let plain: Vec<f64> = self.values.iter().flatten().copied().collect();
         let decoded = decoded(&plain, unit)?;
         let known = self.values.iter_mut().flatten();
         known.zip(decoded.values).for_each(|(value, decoded)| *value = decoded);
-        Some(decoded.finding)
+        Some((decoded.finding, decoded.is_turn))
     }
 }
 
@@ -196,7 +196,9 @@ impl Observed {
         let counts = asked.counts_per_turn.filter(|_| asked.unit.is_none());
         let stated = asked.unit.or(heading.unit()).filter(|_| counts.is_none());
         let quantity = if counts.is_some() { Quantity::Position } else { quantity(heading, options) };
-        findings.extend(samples.decode(stated));
+        let (decoded, confirmed) = samples.decode(stated).unzip();
+        let confirmed = confirmed == Some(true);
+        findings.extend(decoded);
         let values: Vec<f64> = samples.values.iter().flatten().copied().collect();
         let assumed = counts.is_none() && stated.is_none();
         let unit = stated.unwrap_or_else(|| match counts {
@@ -209,11 +211,14 @@ impl Observed {
             "data.unit",
         ));
         findings.extend(unknown_unit(heading, assumed, unit.symbol(), "data.unit"));
-        let doubted = heading.unknown.is_none() && counts.is_none() && asked.unit.is_none();
+        let doubted = !confirmed && heading.unknown.is_none() && counts.is_none() && asked.unit.is_none();
         findings.extend(doubted.then(|| doubtful_unit(&values, unit, assumed)).flatten());
         let because = match counts {
             Some(counts) => format!("{}; counts, {counts} of them a turn", pick.because),
-            None => format!("{}; unit {}", pick.because, told(asked.unit.is_some(), assumed)),
+            None => {
+                let turns = if confirmed { ", confirmed by its wraps" } else { "" };
+                format!("{}; unit {}{turns}", pick.because, told(asked.unit.is_some(), assumed))
+            }
         };
         let shown = counts.is_none().then(|| unit.symbol().to_owned());
         let factor = counts.map_or(unit.to_si(), |counts| std::f64::consts::TAU / counts);

@@ -76,7 +76,13 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let stamps = record.stamps_s();
     let between = |[from, to]: [usize; 2]| value(stamps, to) - value(stamps, from);
     let (Some(first), Some(last)) = (turns.first(), turns.last()) else { return Vec::new() };
-    let moves = between([first.at, last.at]);
+    // What is held does not move.
+    let held = (0..turns.len()).filter(|number| half_swings.is_held(*number));
+    let held = held.filter_map(|number| turns.get(number)).map(|turn| {
+        let [from, to] = turn.plateau;
+        between([from.max(first.at), to.min(last.at)])
+    });
+    let moves = between([first.at, last.at]) - held.sum::<f64>();
     let is_most = found.iter().map(|swing| between(swing.samples)).sum::<f64>() > MOST * moves;
     let is_whole = found.iter().any(|swing| swing.samples == [0, values.len() - 1]);
     let is_swing = breaks.len() > MANY && half_swings.regular_outside(&found) > SWINGS_OUTSIDE
@@ -357,6 +363,19 @@ mod tests {
             let found = parts(&again);
             assert!(found.len() == 2 && (found[1][0] - 12.0).abs() < 0.7, "{found:?}");
         }
+    }
+
+    /// Regression: a hold that is longer than the swing counted as motion, and the swing was read with the lift.
+    #[test]
+    fn a_long_hold_is_no_motion() {
+        let held = record(30.0, 0.01, |time| match time {
+            time if time < 2.0 => 0.0,
+            time if time < 5.0 => 0.5 - 0.5 * (std::f64::consts::PI * (time - 2.0) / 3.0).cos(),
+            time if time < 20.0 => 1.0,
+            time => decay(time - 20.0),
+        });
+        let found = parts(&held);
+        assert!(found.len() == 1 && (found[0][0] - 20.0).abs() < 0.15 && found[0][1] > 29.9, "{found:?}");
     }
 
     /// Beating, growth, dry friction, a shift of the rest position and a swing over many decades are free.

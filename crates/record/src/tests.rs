@@ -492,15 +492,13 @@ fn latin_and_utf_16_are_read() {
 #[test]
 fn files_that_are_no_text_are_told_by_their_beginning() {
     let refused = |bytes: &[u8]| read_text("log", bytes, &ReadOptions::default()).unwrap_err().to_string();
-    let workbook = refused(b"PK\x03\x04\x14\x00");
-    assert_eq!(
-        workbook,
-        "log: is a ZIP archive, as Excel's workbooks (.xlsx) are, not a text file with columns; save the sheet as CSV"
-    );
     for (bytes, words) in [
-        (&b"PAR1\x15\x04"[..], "logs.read_parquet"),
-        (b"MATLAB 5.0 MAT-file", "logs.read_mat"),
-        (b"\x89MCAP0\r\n", "logs.read_mcap"),
+        (&b"PK\x03\x04\x14\x00"[..], "is a ZIP archive, as Excel's workbooks (.xlsx) are, not a text file"),
+        (b"PAR1\x15\x04", "pandas.read_parquet("),
+        (b"MATLAB 5.0 MAT-file", "its header is incomplete or damaged; write its columns as text"),
+        (b"MATLAB 7.3 MAT-file", "h5py.File("),
+        (b"\x89HDF\r\n", "h5py.File("),
+        (b"\x89MCAP0\r\n", "make_reader("),
         (b"#ROSBAG V2.0\n", "logs.read_rosbag"),
         (b"\x7fELF\x02\x01\x01\0\0", "is no text (byte 7)"),
     ] {

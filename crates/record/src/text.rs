@@ -6,12 +6,43 @@ use std::borrow::Cow;
 /// Formats that contain logs but are not text: first bytes, name of the format, and instruction for
 /// extracting the columns.
 const OTHERS: &[(&[u8], &str, &str)] = &[
-    (b"PK\x03\x04", "a ZIP archive, as Excel's workbooks (.xlsx) are", "save the sheet as CSV"),
-    (b"\xd0\xcf\x11\xe0", "an Excel workbook (.xls)", "save the sheet as CSV"),
-    (b"PAR1", "a Parquet file", "from Python, ringdown_lab.logs.read_parquet reads it"),
-    (b"MATLAB 5.0", "a MATLAB file", "from Python, ringdown_lab.logs.read_mat reads it"),
-    (b"\x89HDF", "an HDF5 file, as MATLAB's of version 7.3 are", "save the columns as CSV"),
-    (b"\x89MCAP", "an MCAP file", "from Python, ringdown_lab.logs.read_mcap reads it"),
+    (
+        b"PK\x03\x04",
+        "a ZIP archive, as Excel's workbooks (.xlsx) are",
+        "save the sheet as CSV, or in Python write\n    \
+         import pandas\n    \
+         pandas.read_excel('in.xlsx').to_csv('out.csv', index=False)",
+    ),
+    (
+        b"\xd0\xcf\x11\xe0",
+        "an Excel workbook (.xls)",
+        "save the sheet as CSV, or in Python write\n    \
+         import pandas  # with xlrd\n    \
+         pandas.read_excel('in.xls').to_csv('out.csv', index=False)",
+    ),
+    (
+        b"PAR1",
+        "a Parquet file",
+        "in Python, ringdown_lab.logs.read_parquet reads it, or write\n    \
+         import pandas  # with pyarrow\n    \
+         pandas.read_parquet('in.parquet').to_csv('out.csv', index=False)",
+    ),
+    (
+        b"\x89HDF",
+        "an HDF5 file",
+        "in Python write\n    \
+         import h5py, numpy; m = h5py.File('in.h5'); print(list(m))\n    \
+         numpy.savetxt('out.csv', numpy.c_[numpy.ravel(m['t']), numpy.ravel(m['angle'])], delimiter=',', \
+         header='time_s,angle_rad', comments='')",
+    ),
+    (
+        b"\x89MCAP",
+        "an MCAP file",
+        "in Python, ringdown_lab.logs.read_mcap reads it, or, where its messages are JSON, write\n    \
+         import csv, json; from mcap.reader import make_reader\n    \
+         csv.writer(open('out.csv', 'w')).writerows([('time_ns', 'angle_rad'), *((m.log_time, \
+         json.loads(m.data)['angle']) for _, _, m in make_reader(open('in.mcap', 'rb')).iter_messages('/angle'))])",
+    ),
     (b"#ROSBAG", "a ROS bag", "from Python, ringdown_lab.logs.read_rosbag reads it"),
     (
         b"SQLite format 3",

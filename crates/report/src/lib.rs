@@ -51,7 +51,7 @@ pub use classes::{
 };
 pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
 pub use error::ReportError;
-pub use modes::sentence as modes_sentence;
+pub use modes::{half_power_width, quality_factor, sentence as modes_sentence};
 pub use remarks::{
     bar_state, is_believed, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings,
 };

@@ -2,7 +2,7 @@
 
 use results::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary, Origin,
-    PipelineOutcome, PipelineRow, RESULT_SCHEMA, Reached, SeedRow, TraceRow,
+    PipelineOutcome, PipelineRow, RESULT_SCHEMA, Reached, Resonance, SeedRow, TraceRow, WithInterval,
 };
 use serde::Serialize;
 
@@ -189,6 +189,7 @@ fn result() -> EstimationResult {
             interval_95: Some([0.182_023, 0.199_899]),
             zeta_std_error: Some(0.000_205_3),
             zeta_interval_95: Some([0.008_343, 0.009_163]),
+            resonance: Resonance::of_swing(OMEGA, WithInterval::normal(0.008_753, 0.000_205_3)),
             reached: Reached::Converged,
             stopped_because: "the relative change of the loss stayed below 1e-12 for 20 steps".into(),
         },

@@ -1,9 +1,12 @@
 //! Tables of the page: cells, and the number of their digits.
 
-use results::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow, TruthComparison};
+use results::{
+    DataSummary, EstimationResult, PipelineOutcome, PipelineRow, Resonance, SeedRow, TruthComparison,
+    WithInterval,
+};
 
 use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
-use crate::modes::mode_words;
+use crate::modes::{half_power_width, mode_words, quality_factor};
 
 /// A quantity and its value, as shown on the page.
 pub(crate) struct Fact {
@@ -48,6 +51,8 @@ pub(crate) struct ComparisonRow {
 pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
     let (oracle, estimate) = (&result.oracle, &result.estimate);
     let unknown = f64::NAN;
+    let of_least_squares = WithInterval { value: oracle.zeta, interval_95: oracle.zeta_interval_95 };
+    let least_squares = Resonance::of_swing(result.envelope.omega_rad_s, of_least_squares);
     vec![
         ComparisonRow {
             quantity: "damping ratio ζ ± standard error",
@@ -58,6 +63,16 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
             quantity: "95 % interval of ζ",
             oracle: Some(interval(oracle.zeta_interval_95)),
             estimate: estimate.zeta_interval_95.map(interval),
+        },
+        ComparisonRow {
+            quantity: "quality factor Q = 1/(2ζ)",
+            oracle: least_squares.as_ref().map(quality_factor),
+            estimate: estimate.resonance.as_ref().map(quality_factor),
+        },
+        ComparisonRow {
+            quantity: "half-power width 2ζf, Hz",
+            oracle: least_squares.as_ref().map(half_power_width),
+            estimate: estimate.resonance.as_ref().map(half_power_width),
         },
         ComparisonRow {
             quantity: "decay rate λ ± standard error, 1/s",
@@ -281,7 +296,11 @@ mod tests {
         result.estimate.interval_95 = None;
         result.estimate.std_error = None;
         let rows = comparison(&result);
-        assert!(rows[3].estimate.is_none());
-        assert_eq!(rows[2].estimate.as_deref(), Some("0.1909610"));
+        let of = |name: &str| {
+            rows.iter().find(|row| row.quantity.contains(name)).and_then(|row| row.estimate.as_deref())
+        };
+        assert_eq!(of("interval of λ"), None);
+        assert_eq!(of("decay rate"), Some("0.1909610"));
+        assert_eq!(of("quality factor"), Some("57.1\u{a0}±\u{a0}1.3"));
     }
 }

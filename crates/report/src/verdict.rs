@@ -32,6 +32,9 @@ pub(crate) struct Verdict {
     pub(crate) sentence: String,
 }
 
+/// Coefficient of determination below which agreement with least squares says little about the damping.
+const LINE: f64 = 0.9;
+
 pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     let who = in_a_sentence(&result.estimator_title);
     let zeta =
@@ -39,11 +42,9 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     let comparison = comparison(result);
     let steps = format::count(result.steps);
     match result.estimate.reached {
-        Reached::Converged => Verdict {
-            tone: if result.pass { Tone::Good } else { Tone::Bad },
-            label: if result.pass { "Within tolerance" } else { "Outside tolerance" },
-            sentence: format!("The {who} finds a damping ratio of {zeta}; it {comparison}."),
-        },
+        Reached::Converged => {
+            converged(result, &format!("The {who} finds a damping ratio of {zeta}; it {comparison}."))
+        }
         Reached::BudgetSpent => Verdict {
             tone: if result.pass { Tone::Caution } else { Tone::Bad },
             label: if result.pass { "Within tolerance, not converged" } else { "Not converged" },
@@ -77,6 +78,26 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
             ),
         },
     }
+}
+
+/// Returns the verdict of an estimate that converged, from the sentence on its value.
+fn converged(result: &EstimationResult, sentence: &str) -> Verdict {
+    let r_squared = result.oracle.r_squared;
+    let (tone, label) = match (result.pass, r_squared < LINE) {
+        (true, false) => (Tone::Good, "Within tolerance"),
+        (true, true) => (Tone::Caution, "Within tolerance, no clear decay"),
+        (false, _) => (Tone::Bad, "Outside tolerance"),
+    };
+    let poor = if r_squared < LINE {
+        format!(
+            " But least squares itself explains little of the envelope (R² {}): one damping ratio hardly describes this \
+             record.",
+            format::fixed(r_squared, 2)
+        )
+    } else {
+        String::new()
+    };
+    Verdict { tone, label, sentence: format!("{sentence}{poor}") }
 }
 
 /// Returns the next steps after an estimation, by the state in which it ended.
@@ -266,6 +287,16 @@ mod tests {
             text.ends_with("by 2.3 %, so it does not solve least squares to the stated 0.1 %."),
             "{text}"
         );
+    }
+
+    /// Regression: agreement on a line through nothing was shown in green.
+    #[test]
+    fn agreement_on_a_poor_line_is_no_success() {
+        let mut result = Sample::new().result;
+        assert_eq!(verdict(&result).tone, Tone::Good);
+        result.oracle.r_squared = 0.2;
+        assert_eq!(verdict(&result).tone, Tone::Caution);
+        assert!(verdict(&result).sentence.contains("R² 0.20"), "{}", verdict(&result).sentence);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Results of an estimation, and the parts that several results share.
 
 use super::method::Reached;
-use super::modes::ModeRow;
+use super::modes::{ModeRow, Resonance};
 use crate::interval::null_is_not_a_number;
 use record::{Clock, Origin, Record, Source, Statements};
 use serde::{Deserialize, Serialize};
@@ -240,6 +240,10 @@ pub struct EstimateSummary {
     pub zeta_std_error: Option<f64>,
     /// 95 % interval of ζ, if the estimator states one.
     pub zeta_interval_95: Option<[f64; 2]>,
+    /// Quality factor and half-power width by ζ and the frequency of the swing; the ends of their intervals are
+    /// `null` if the estimator states none for ζ. `None` without a resonance.
+    #[serde(flatten)]
+    pub resonance: Option<Resonance>,
     /// State in which the training ended.
     pub reached: Reached,
     /// Reason why the training stopped, as a sentence.

@@ -55,7 +55,7 @@ pub use learning::{
     LearnTest, LearnTorqueRow, LearnTraceRow, LearnValidation,
 };
 pub use method::{Ablation, Estimand, Family, Reached};
-pub use modes::ModeRow;
+pub use modes::{ModeRow, Resonance};
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy, SplitKind,

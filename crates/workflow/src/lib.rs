@@ -31,7 +31,7 @@ mod result;
 
 pub use error::{WorkflowError, in_options};
 pub use logs::{is_log, is_run, left_out, logs};
-pub use modes::{mode_rows, modes};
+pub use modes::{mode_rows, modes, resonance};
 pub use question::{Answer, Question};
 pub use read::{Given, Loaded, Reading};
 pub use result::{series_rows, title};

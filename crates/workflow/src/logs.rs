@@ -4,7 +4,7 @@ use crate::error::WorkflowError;
 use std::path::{Path, PathBuf};
 
 /// Extensions of files that hold samples.
-const TABLES: &[&str] = &["csv", "tsv", "lvm", "npy", "npz", "wav"];
+const TABLES: &[&str] = &["csv", "tsv", "lvm", "npy", "npz", "mat", "wav"];
 /// Extensions of text files that may hold a table.
 const TEXTS: &[&str] = &["txt", "log", "dat"];
 /// Extensions of documents that seldom hold a table.
@@ -28,10 +28,10 @@ pub fn is_run(folder: &Path) -> bool {
 
 /// Returns the logs at a path: a file itself, or the logs in a folder, sorted by name.
 ///
-/// In a folder these are the files that end in `.csv`, `.tsv`, `.lvm`, `.npy`, `.npz` or `.wav`; if there are
-/// none, those that end in `.txt`, `.log` or `.dat`, or else in `.json`, `.jsonl` or `.ndjson`. Beside raw data
-/// of phyphox, the results that the app computed from them are skipped ([`left_out`]), as are hidden files and
-/// subfolders.
+/// In a folder these are the files that end in `.csv`, `.tsv`, `.lvm`, `.npy`, `.npz`, `.mat` or `.wav`; if
+/// there are none, those that end in `.txt`, `.log` or `.dat`, or else in `.json`, `.jsonl` or `.ndjson`. Beside
+/// raw data of phyphox, the results that the app computed from them are skipped ([`left_out`]), as are hidden
+/// files and subfolders.
 ///
 /// # Errors
 /// [`WorkflowError::NoLogs`] for a folder without a log, and for the folder of a finished run, whose tables
@@ -163,7 +163,7 @@ mod tests {
         assert!(said.contains("only Raw Data.csv was read"), "{said}");
         assert!(said.contains("Autocorrelation.csv, Resonance.csv"), "{said}");
         assert_eq!(left_out(&scratch.path().join("tables")), None);
-        for file in ["a.lvm", "a.npy", "a.npz", "a.wav", "a.json", "a.jsonl", "a.ndjson"] {
+        for file in ["a.lvm", "a.npy", "a.npz", "a.mat", "a.wav", "a.json", "a.jsonl", "a.ndjson"] {
             assert_eq!(names(&within(file.trim_start_matches("a."), &[file])), [file]);
         }
         let file = scratch.path().join("x.csv");

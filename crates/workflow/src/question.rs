@@ -133,6 +133,19 @@ impl Question {
     /// [`WorkflowError`] with the file, the place in it and the option to set.
     pub fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, WorkflowError> {
         let stated = nominal::read(nominal)?;
+        Self::read_with(records, stated, nominal, reading)
+    }
+
+    /// Reads records as [`Question::read`] does, for a nominal simulator whose file is called `nominal`.
+    ///
+    /// # Errors
+    /// Same as [`Question::read`].
+    pub fn read_with(
+        records: &[PathBuf],
+        stated: StatedNominal,
+        nominal: &Path,
+        reading: &Reading,
+    ) -> Result<Self, WorkflowError> {
         let gain = match records.first() {
             Some(first) if !stated.driven => gain_of(first, &stated, reading),
             _ => None,
@@ -194,6 +207,19 @@ impl Question {
     pub fn digests(&self) -> String {
         let digests: Vec<&str> = self.given.iter().map(|given| given.row.digest.as_str()).collect();
         digests.join(" ")
+    }
+
+    /// Checks the records as a diagnosis does before it fits anything.
+    ///
+    /// # Errors
+    /// Those with which a diagnosis refuses its records.
+    pub fn check(&self) -> Result<(), WorkflowError> {
+        match self.answer_watched(&Settings::default(), 0, &|_| false) {
+            Err(WorkflowError::Diagnosis { source: DiagnosisError::Interrupted { .. }, .. }) | Ok(_) => {
+                Ok(())
+            }
+            Err(refusal) => Err(refusal),
+        }
     }
 
     /// Computes the diagnosis. `seed` is the number that the answer states as the root of the random draws of

@@ -2,7 +2,7 @@
 
 use crate::read::{Given, observed};
 use crate::result::title;
-use diagnosis::{Diagnosis, has_fitted_hidden_start, rounded};
+use diagnosis::{Diagnosis, StartState, rounded};
 use dynamics::{Active, DynamicsError, Effect, Start, System, Units};
 use export::Repaired;
 
@@ -10,18 +10,10 @@ use export::Repaired;
 const OF_NOISE: f64 = 0.01;
 const OF_TIME: f64 = 1e-6;
 
-/// Returns what the repaired simulator of a diagnosis cannot include, in sentences; `effects` are those of
-/// its motion.
-fn left_out(found: &Diagnosis, effects: &[Active]) -> Vec<String> {
+/// Returns what the repaired simulator of a diagnosis cannot include, in sentences.
+fn left_out(found: &Diagnosis) -> Vec<String> {
     let own = &found.repaired;
     let mut left_out: Vec<String> = Vec::new();
-    for active in effects.iter().filter(|active| has_fitted_hidden_start(active.id())) {
-        let title = title(active.id());
-        left_out.push(format!(
-            "{title}: the second body's own motion at the start; in this file it starts with the motion of \
-             the first body"
-        ));
-    }
     left_out.extend(own.left_out.iter().map(|(id, reason)| format!("{}: {reason}", title(id))));
     for id in &found.verdict.effects {
         if !own.effects.iter().any(|active| active.id() == *id) {
@@ -48,7 +40,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     let own = &found.repaired;
     let (effects, chain): (Vec<Active>, Vec<Active>) =
         own.effects.iter().partition(|active| matches!(active.effect(), Effect::System(_)));
-    let mut left_out = left_out(found, &effects);
+    let mut left_out = left_out(found);
     let system = match System::new(own.nominal, effects) {
         Ok(system) => system,
         Err(error) => {
@@ -63,18 +55,25 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     let (rate_hz, seconds) = first.map_or((1.0, 1.0), |given| (given.rate_hz, given.row.duration_s));
     // Uncertainty that the sensor's noise leaves in a position, and in a velocity over a swing or the record.
     let per_second = system.nominal().angular_frequency().max(1.0 / seconds);
+    let at_rate = noise * per_second;
     // A diagnosis without samples was refused before.
-    let at_start = |values: &[f64], error| rounded(values.first().copied().unwrap_or_default(), error);
+    let first_of = |values: &[f64]| values.first().copied().unwrap_or_default();
+    let start = own.start.clone().unwrap_or_else(|| StartState {
+        position: first_of(&found.series.position),
+        velocity: first_of(&found.series.velocity),
+        hidden: Vec::new(),
+    });
+    // A hidden body's state is known less well than the first body's: its digits suffice.
+    let hidden =
+        |states: Vec<f64>| states.into_iter().map(|state| rounded(state, noise.min(at_rate))).collect();
     Ok(Repaired {
         system,
         units,
         chain,
         left_out,
         input: own.input_hold,
-        start: Start {
-            position: at_start(&found.series.position, noise),
-            velocity: at_start(&found.series.velocity, noise * per_second),
-        },
+        start: Start { position: rounded(start.position, noise), velocity: rounded(start.velocity, at_rate) },
+        hidden_starts: start.hidden.into_iter().map(|(id, states)| (id, hidden(states))).collect(),
         // Without a record the observed quantity is unknown; an angle is assumed, as elsewhere.
         observed: observed(first.map(|given| given.quantity).unwrap_or_default()),
         noise: rounded(noise, OF_NOISE * noise),

@@ -322,8 +322,10 @@ fn next_experiment(found: &Diagnosis) -> NextExperiment {
 /// Explains why no experiment is proposed.
 fn no_experiment(found: &Diagnosis) -> &'static str {
     match found.verdict.status {
-        Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
-        Status::Effect => "None: no other effect explains these records as well as what was named.",
+        Status::None | Status::Calibration => {
+            "none is needed: no effect was named, so there is nothing to confirm."
+        }
+        Status::Effect => "none is needed: no other effect explains these records as well as what was named.",
         Status::Unknown => {
             "These data suggest none, because no known effect explains what is missing. A second release \
              from another amplitude shows whether it depends on amplitude or on time."

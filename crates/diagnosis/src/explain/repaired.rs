@@ -1,6 +1,6 @@
 //! Repaired simulator: the coefficients and effects of a fit, as numbers for another simulator.
 
-use crate::answer::{Interval, RepairedSimulator, Undetermined};
+use crate::answer::{Interval, RepairedSimulator, StartState, Undetermined};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::evidence::determined::{reach, says_something};
@@ -60,7 +60,19 @@ pub(crate) fn repaired(
     if is_rounded && !effects.iter().any(|active| active.effect() == quantization) {
         effects.extend(Active::of(quantization, &[step(data)]));
     }
-    Ok(RepairedSimulator { nominal, effects, undetermined, input_hold, left_out })
+    let start = start(data, &fit);
+    Ok(RepairedSimulator { nominal, effects, start, undetermined, input_hold, left_out })
+}
+
+/// Returns the fitted state at the first sample of the first record.
+fn start(data: &Data, fit: &Fit) -> Option<StartState> {
+    data.segments.first().filter(|segment| segment.first && segment.record == 0)?;
+    let [position, velocity, own @ ..] = fit.point.starts.first()?.as_slice() else { return None };
+    let mut own = own.iter().copied();
+    let effects = fit.hypothesis.effects().filter(|effect| effect.free_hidden() > 0);
+    let hidden =
+        effects.map(|effect| (effect.id(), own.by_ref().take(effect.free_hidden()).collect())).collect();
+    Some(StartState { position: *position, velocity: *velocity, hidden })
 }
 
 /// Returns the fit on the longest shooting interval that it follows. If the squares are uneven in the start

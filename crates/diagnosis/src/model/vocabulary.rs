@@ -6,13 +6,6 @@ use crate::model::candidates::{self, PositionTorque, UnlistedDamping, UnlistedSt
 use dynamics::{Active, Class, Effect, NominalSimulator};
 use record::Quantity;
 
-/// Returns `true` if the effect with a public id has a hidden motion whose start is fitted with the record's
-/// start state.
-#[must_use]
-pub fn has_fitted_hidden_start(id: &str) -> bool {
-    Candidate::find(id).is_some_and(|candidate| candidate.free_hidden() > 0)
-}
-
 /// Returns the id of the class that the effect with a public id belongs to. A class holds effects that act
 /// alike: `friction`, `restoring`, `damping`, `play`, `drift`, `second_body`, `forcing`, `preload`,
 /// `actuator`, `sensor` or `stamps`. `None` for ids outside the vocabulary.

@@ -1,7 +1,7 @@
 //! Second body on a spring.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
-use crate::export::{Export, StateExport};
+use crate::export::{Export, Joint, StateExport};
 use crate::law::{Hidden, Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -68,6 +68,7 @@ impl Law for FlexibleCoupling {
                 start: "velocity",
             },
         ],
+        joint: Joint::SecondBody { inertia: "inertia", stiffness: "stiffness", damping: "damping" },
         ..Export::torque("{stiffness} * ({position} - position) + {damping} * ({velocity} - velocity)")
     };
 

@@ -9,6 +9,7 @@ mod cassy;
 mod json;
 mod literal;
 mod lvm;
+mod mat;
 mod npy;
 mod npz;
 mod plotter;
@@ -45,6 +46,7 @@ pub(crate) fn table(bytes: &[u8]) -> Option<Result<Contained, Unread>> {
     of("a WAVE sound", wav::text(bytes))
         .or_else(|| of("a NumPy array", npy::text(bytes)))
         .or_else(|| of("an archive of NumPy arrays", npz::text(bytes)))
+        .or_else(|| of("a MATLAB file", mat::text(bytes)))
         .or_else(|| textual(bytes))
         .or_else(|| lines().map(Ok))
 }

@@ -95,19 +95,40 @@ impl<'a> Array<'a> {
         let (fields, size) = fields(header.get("descr").ok_or_else(incomplete)?)?;
         // The bytes after the header, which exist since the header does.
         let data = bytes.get(start + length..).unwrap_or_default();
-        let needed = shape.iter().try_fold(size, |product, side| product.checked_mul(*side));
-        match needed {
+        let fortran = header.get("fortran_order") == Some(&Literal::Truth(true));
+        Self::checked(fields, size, &shape, fortran, data)
+    }
+
+    /// Checks that all numbers are there, and that they are a table.
+    fn checked(
+        fields: Vec<Field>,
+        size: usize,
+        sides: &[usize],
+        fortran: bool,
+        data: &'a [u8],
+    ) -> Result<Self, String> {
+        match sides.iter().try_fold(size, |product, side| product.checked_mul(*side)) {
             Some(0) => return Err("it is empty".to_owned()),
             Some(needed) if needed <= data.len() => {}
             _ => return Err("it is cut off: its header announces more numbers than it holds".to_owned()),
         }
-        let fortran = header.get("fortran_order") == Some(&Literal::Truth(true));
-        let shape: Vec<usize> = shape.into_iter().filter(|side| *side != 1).collect();
+        let shape: Vec<usize> = sides.iter().copied().filter(|side| *side != 1).collect();
         let fields = fields.into_iter().flat_map(expanded).collect();
         match shape.len() {
             0..=2 => Ok(Self { fields, size, shape, fortran, data }),
             sides => Err(format!("it has {sides} dimensions and a table has two")),
         }
+    }
+
+    /// Makes an array of plain numbers out of their type's code, as in [`Field::parse`], the lengths of the sides,
+    /// of which the first varies fastest, and the numbers' bytes.
+    ///
+    /// # Errors
+    /// As [`Array::parse`].
+    pub(super) fn column_major(code: &str, sides: &[usize], data: &'a [u8]) -> Result<Self, String> {
+        let field = Field::parse("", code, 0, 1)?;
+        let size = field.size;
+        Self::checked(vec![field], size, sides, true, data)
     }
 
     /// Returns `true` if the elements have no fields with names.

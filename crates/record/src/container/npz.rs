@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use std::io::Read;
 
 /// Largest size of all unpacked arrays, in bytes: an archive can be a thousand times smaller than that.
-const LARGEST: usize = 1 << 28;
+pub(super) const LARGEST: usize = 1 << 28;
 /// Beginning of an entry.
 const LOCAL: &[u8] = b"PK\x03\x04";
 /// Number of bytes of the end of the directory, without the comment after it.
@@ -145,8 +145,17 @@ fn table(bytes: &[u8], entries: &[Entry]) -> Result<String, String> {
             }
         }
     }
-    let remarks: Vec<(String, String)> =
-        arrays.iter().filter_map(|(name, array)| Some(((*name).to_owned(), single(array)?))).collect();
+    side_by_side(arrays).map_err(|problem| fault.unwrap_or(problem))
+}
+
+/// Writes arrays with their names as a table. Single numbers become remarks; a table alone keeps its columns
+/// without its name.
+///
+/// # Errors
+/// A clause about columns of different lengths, or that there are none.
+pub(super) fn side_by_side<N: AsRef<str>>(mut arrays: Vec<(N, Array<'_>)>) -> Result<String, String> {
+    let remark = |(name, array): &(N, Array<'_>)| Some((name.as_ref().to_owned(), single(array)?));
+    let remarks: Vec<(String, String)> = arrays.iter().filter_map(remark).collect();
     arrays.retain(|(_, array)| array.single().is_none());
     if let [(_, array)] = arrays.as_slice()
         && array.is_nameless()
@@ -157,9 +166,11 @@ fn table(bytes: &[u8], entries: &[Entry]) -> Result<String, String> {
     let alone = arrays.len() == 1;
     let columns: Vec<Column<'_>> = arrays
         .iter()
-        .flat_map(|(name, array)| array.columns(if alone && !array.is_nameless() { "" } else { name }))
+        .flat_map(|(name, array)| {
+            array.columns(if alone && !array.is_nameless() { "" } else { name.as_ref() })
+        })
         .collect();
-    named(&columns, &remarks).map_err(|problem| fault.unwrap_or(problem))
+    named(&columns, &remarks)
 }
 
 /// Returns the only number or text of an array, as text.

@@ -3,7 +3,7 @@
 use super::Unread;
 use crate::{ReadOptions, Record, read_text};
 use flate2::Compression;
-use flate2::write::DeflateEncoder;
+use flate2::write::{DeflateEncoder, ZlibEncoder};
 use std::io::Write;
 
 /// Number of samples of the swing.
@@ -131,6 +131,76 @@ fn segment(time: &str, value: &str) -> String {
         "Channels\t1\t\nDate\t2024/05/01\t\nTime\t{time}\t\nX_Dimension\tTime\t\nX0\t0,0\t\nDelta_X\t2,5E-1\t\n\
          ***End_of_Header***\t\t\nX_Value\tUntitled\tComment\n\t{value}\n\t-1,25\tstarted\n"
     )
+}
+
+/// Returns an element of a MATLAB file: its type and its bytes, padded.
+fn element(kind: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = [kind.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat();
+    bytes.extend(data);
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+    bytes
+}
+
+/// Returns a variable of a MATLAB file: a class, a name of at most four letters, lengths of sides, its content.
+fn matrix(class: u32, name: &str, sides: [u32; 2], content: &[u8]) -> Vec<u8> {
+    let small = [&(1 | (name.len() as u32) << 16).to_le_bytes()[..], name.as_bytes(), &[0; 4][name.len()..]];
+    let sides = sides.map(u32::to_le_bytes).concat();
+    let flags = element(6, &[class.to_le_bytes(), [0; 4]].concat());
+    element(14, &[flags, element(5, &sides), small.concat(), content.to_vec()].concat())
+}
+
+/// Returns a MATLAB file.
+fn mat(variables: &[Vec<u8>]) -> Vec<u8> {
+    let header = format!("{:116}", "MATLAB 5.0 MAT-file, Platform: GLNXA64").into_bytes();
+    [header, vec![0; 8], vec![0, 1, b'I', b'M'], variables.concat()].concat()
+}
+
+/// Returns the swing's times and angles as two vectors of a MATLAB file, a lying and a standing one.
+fn vectors() -> [Vec<u8>; 2] {
+    let all = one_after_another();
+    let (times, angles) = all.split_at(8 * SAMPLES);
+    let samples = SAMPLES as u32;
+    [matrix(6, "t", [1, samples], &element(9, times)), matrix(6, "phi", [samples, 1], &element(9, angles))]
+}
+
+fn deflated(variable: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(variable).unwrap();
+    let packed = encoder.finish().unwrap();
+    [&15_u32.to_le_bytes()[..], &(packed.len() as u32).to_le_bytes(), &packed].concat()
+}
+
+#[test]
+fn matlab_variables_are_columns_packed_or_not() {
+    let text = matrix(4, "unit", [1, 3], &element(4, b"r\0a\0d\0"));
+    let gain = matrix(6, "gain", [1, 1], &element(2, &[7]));
+    let variables = [&[text, gain][..], &vectors()].concat();
+    holds_the_swing(&mat(&variables));
+    holds_the_swing(&mat(&variables.iter().map(|variable| deflated(variable)).collect::<Vec<_>>()));
+    let table_alone = matrix(6, "log", [SAMPLES as u32, 2], &element(9, &one_after_another()));
+    holds_the_swing(&mat(&[table_alone]));
+    let small = matrix(8, "a", [1, 4], &[1_u32 | 4 << 16, 0x04ff_0201].map(u32::to_le_bytes).concat());
+    assert_eq!(table(&mat(&[small])), "a\n1\n2\n-1\n4\n");
+}
+
+#[test]
+fn fields_of_a_matlab_structure_are_columns() {
+    let names = element(1, b"time\0phi\0\0");
+    let width = [5_u32 | 4 << 16, 5].map(u32::to_le_bytes).concat();
+    let log = matrix(2, "log", [1, 1], &[width, names, vectors().concat()].concat());
+    assert!(table(&mat(std::slice::from_ref(&log))).starts_with("log.time,log.phi\n0,0.5\n"));
+    holds_the_swing(&mat(&[log]));
+}
+
+#[test]
+fn matlab_variables_that_are_no_columns_are_named_with_what_converts_them() {
+    let cell = problem(&mat(&[matrix(1, "c", [1, 1], &[])]));
+    assert!(cell.contains("its variable `c` is a cell array; write its columns as text"), "{cell}");
+    assert!(cell.contains("scipy.io.loadmat('in.mat')"), "{cell}");
+    let short = problem(&mat(&[matrix(6, "x", [1, 9], &element(9, &[0; 8]))]));
+    assert!(short.contains("of its variable `x`, it is cut off"), "{short}");
+    let newer = problem(b"MATLAB 7.3 MAT-file, Platform: GLNXA64");
+    assert!(newer.contains("version 7.3") && newer.contains("h5py.File('in.mat')"), "{newer}");
 }
 
 #[test]
@@ -358,6 +428,7 @@ fn damaged_files_of_every_kind_never_panic() {
         lvm("No", &[segment("12:00:00", "1"), segment("12:00:09", "2")].concat()),
         "MIN=0\t-5\nDEF=\"t\" t / s\tU_A1 / V\n0,0\t1,0\n".repeat(2).into_bytes(),
         "10:12:31.010 -> angle:4.15 target: -1\n".repeat(9).into_bytes(),
+        mat(&[matrix(6, "a", [2, 3], &element(9, &[7; 48])), matrix(2, "s", [1, 1], &[8; 24])]),
         json.clone().into_bytes(),
         json.replace("}, {", "}\n{").into_bytes(),
         format!("{{\"n\": 1, \"data\": {json}}}").into_bytes(),

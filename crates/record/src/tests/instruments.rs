@@ -43,6 +43,21 @@ fn a_single_column_has_no_separator_and_no_header() {
     assert!(read(&json).1.reading.sentence.starts_with("read as: JSON; time = "));
 }
 
+/// Regression: angles in radians that wrap, of more than a turn, were refused as degrees by a diagnosis.
+#[test]
+fn angles_that_wrap_after_a_turn_of_their_unit_are_not_doubted() {
+    let half = std::f64::consts::PI;
+    let wrapped = |angle: f64| (30.0 * angle + half).rem_euclid(2.0 * half) - half;
+    let text: String = (0..3000)
+        .map(|at| 0.01 * f64::from(at))
+        .map(|time| format!("{time:.2},{:.5}\n", wrapped((-0.02 * time).exp() * (2.0 * time).cos())))
+        .collect();
+    let (_, source) = read(&format!("time_s,yaw_rad\n{text}"));
+    assert_eq!(source.findings.len(), 1, "{:?}", source.findings);
+    assert!(source.findings[0].contains("the values wrap"), "{:?}", source.findings);
+    assert!(!source.reading.value.is_stated_by_header(), "{}", source.reading.value.because);
+}
+
 #[test]
 fn dates_of_other_countries_are_read() {
     let row = |date: &'static str, half: &'static str| {

@@ -35,6 +35,11 @@ pub(crate) enum ResumeError {
          old record back, or start again in another folder"
     )]
     OtherData { file: String, expected: String, found: String },
+    #[error(
+        "{file}: the record that the run was made with is not there; a relative path starts from the folder in which the \
+         program runs: change to the folder in which the run was made, or put the record back"
+    )]
+    NoData { file: String },
     #[error("{file}: the checkpoint belongs to another run; remove it and resume")]
     ForeignCheckpoint { file: String },
     #[error("{folder}: this run is not finished, so there is nothing to verify; finish it with --resume")]

@@ -4,9 +4,13 @@ use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
 use identify::{Estimated, LinearOscillator, Mode, identify};
 use record::{Clock, Look, ReadOptions, look};
+use results::Resonance;
 use std::path::{Path, PathBuf};
 use workflow::WorkflowError;
 use workflow::read::centered;
+
+/// Damping ratio from which no swing is seen.
+pub(super) const CRITICAL: f64 = 0.95;
 
 /// Log with its nearest linear oscillator.
 pub(super) struct Looked {
@@ -73,6 +77,17 @@ fn identified(path: &Path, reading: &Reading, look: Look) -> Result<Looked, Trai
 impl Looked {
     pub(super) fn duration_s(&self) -> f64 {
         self.look.clock.duration_s()
+    }
+
+    /// Returns `true` if the oscillator swings visibly.
+    pub(super) fn swings(&self) -> bool {
+        self.oscillator.damping_ratio().is_some_and(|ratio| ratio.value < CRITICAL)
+    }
+
+    /// Returns the sharpness of the oscillator's resonance; `None` if it has none.
+    pub(super) fn resonance(&self) -> Option<Resonance> {
+        let oscillator = &self.oscillator;
+        workflow::resonance(oscillator.natural_frequency_hz()?, oscillator.damping_ratio()?)
     }
 
     /// Returns the number of cycles in the record; `None` without a natural frequency.

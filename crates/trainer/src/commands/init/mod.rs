@@ -3,6 +3,8 @@
 mod damping;
 mod looked;
 mod modes;
+mod shell;
+mod tried;
 
 use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
@@ -12,15 +14,15 @@ use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
-use experiment::envelope_by_default;
 use identify::{Estimated, regular_part};
-use looked::{Looked, looked};
+use looked::{CRITICAL, Looked, looked};
 use modes::uncertain;
 use record::Fault;
 use report::format::significant;
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
-use std::path::{Component, Path, PathBuf};
+use shell::{given, path_from, path_word};
+use std::path::{Path, PathBuf};
 use workflow::guess as files;
 use workflow::read::{bias, coordinate_of};
 use workflow::{WorkflowError, in_options, left_out, logs};
@@ -59,8 +61,8 @@ struct Found {
     each: Vec<EachLog>,
     coordinate: Coordinate,
     folder: PathBuf,
-    /// Remark on a damping ratio that changes along the decay.
-    changing: Option<String>,
+    /// Remarks from trying the commands: a damping ratio that changes along the decay, and refusals.
+    tried: Vec<String>,
     /// Names of the files with their texts.
     files: Vec<(&'static str, String)>,
     /// Purpose of each suggested command, and the command.
@@ -106,38 +108,11 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
     let mut surest = looked.into_iter().next().ok_or_else(none)?;
     surest.look.source.findings.extend(left_out(log));
-    let Looked { path, reading, look, oscillator, .. } = &surest;
-    let coordinate = coordinate_of(look.source.reading.coordinate);
-    let name = path.display().to_string();
-    let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
-    let (mut next, mut changing) = (Vec::new(), None);
-    if is_diagnosable(&surest) {
-        next.push((
-            "what a linear oscillator with these numbers lacks",
-            format!(
-                "trainer diagnose {} --nominal {}{}{}",
-                path_word(log),
-                path_word(&folder.join("nominal.toml")),
-                given(reading),
-                if bias { " --remove-mean" } else { "" }
-            ),
-        ));
-    }
-    // Only a free decay has an envelope from which a damping ratio can be estimated.
-    let envelope = envelope_by_default(&look.record, &look.clock);
-    if let Some(envelope) = envelope.ok().filter(|_| oscillator.input_gain.is_none()) {
-        changing = damping::changing(&envelope.envelope);
-        let path = path_from(&folder, path).display().to_string();
-        files.push(("estimate.toml", files::configuration(&path, &options(&surest))));
-        next.push((
-            match envelope.because {
-                Some(_) => "the damping ratio from the samples",
-                None => "the damping ratio from the decay of the peaks",
-            },
-            format!("trainer {}", path_word(&folder.join("estimate.toml"))),
-        ));
-    }
-    Ok(Found { surest, each, coordinate, folder, changing, files, next })
+    let coordinate = coordinate_of(surest.look.source.reading.coordinate);
+    let (files, next, tried) = (Vec::new(), Vec::new(), Vec::new());
+    Ok(Found { surest, each, coordinate, folder, tried, files, next }
+        .with_diagnosis(log, bias)
+        .with_estimate())
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
@@ -198,6 +173,62 @@ fn apart(each: &[EachLog]) -> Option<String> {
 }
 
 impl Found {
+    /// Adds `nominal.toml`, and the diagnosis with it or its refusal.
+    fn with_diagnosis(mut self, log: &Path, bias: bool) -> Self {
+        let Looked { path, reading, oscillator, .. } = &self.surest;
+        let file = self.folder.join("nominal.toml");
+        let text = files::nominal_toml(&path.display().to_string(), oscillator, self.coordinate);
+        if is_diagnosable(&self.surest) {
+            let reading = Reading { remove_mean: bias || reading.remove_mean, ..reading.clone() };
+            match tried::diagnosis(log, (&file, &text), &reading.plain()) {
+                Ok(()) => self.next.push((
+                    "what a linear oscillator with these numbers lacks",
+                    format!(
+                        "trainer diagnose {} --nominal {}{}",
+                        path_word(log),
+                        path_word(&file),
+                        given(&reading)
+                    ),
+                )),
+                Err(refusal) => self.tried.push(format!("a diagnosis would refuse this record: {refusal}")),
+            }
+        }
+        self.files.push(("nominal.toml", text));
+        self
+    }
+
+    /// Adds `estimate.toml` and the estimate with it, or its refusal. Only a free decay has an envelope from which a
+    /// damping ratio can be estimated.
+    fn with_estimate(mut self) -> Self {
+        let Looked { path, oscillator, .. } = &self.surest;
+        if oscillator.input_gain.is_some() {
+            return self;
+        }
+        let file = self.folder.join("estimate.toml");
+        let configuration =
+            |path: &Path| files::configuration(&path.display().to_string(), &options(&self.surest));
+        // The folder is not there yet, and a path out of it leads nowhere.
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        match tried::estimate(&file, &configuration(&absolute)) {
+            Ok(envelope) => {
+                let what = match envelope.because {
+                    Some(_) => "the damping ratio from the samples",
+                    None => "the damping ratio from the decay of the peaks",
+                };
+                let text = configuration(&path_from(&self.folder, path));
+                self.files.push(("estimate.toml", text));
+                self.next.push((what, format!("trainer {}", path_word(&file))));
+                self.tried.extend(damping::changing(&envelope.envelope));
+            }
+            // A motion without a swing has its own remark.
+            Err(refusal) if self.surest.swings() => {
+                self.tried.push(format!("an estimate would refuse this record: {refusal}"));
+            }
+            Err(_) => {}
+        }
+        self
+    }
+
     fn json(&self) -> Value {
         let number = |estimated: Option<Estimated>| {
             estimated.map(|found| json!({ "value": found.value, "std_error": found.std_error }))
@@ -208,6 +239,7 @@ impl Found {
                 "because": column.because,
             })
         });
+        let resonance = self.surest.resonance();
         json!({
             "record": {
                 "path": self.surest.look.source.path,
@@ -225,6 +257,8 @@ impl Found {
                 "coordinate": files::name(self.coordinate),
                 "natural_frequency_hz": number(self.surest.oscillator.natural_frequency_hz()),
                 "damping_ratio": number(self.surest.oscillator.damping_ratio()),
+                "quality_factor": resonance.map(|found| found.quality_factor),
+                "half_power_width_hz": resonance.map(|found| found.half_power_width_hz),
                 "damping_per_inertia": number(Some(self.surest.oscillator.damping)),
                 "rest": number(self.surest.oscillator.rest),
                 "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
@@ -260,6 +294,7 @@ impl Found {
             (Some(frequency), Some(ratio)) => {
                 rows.push(row("natural frequency, Hz", format!("{}, undamped", uncertain(frequency))));
                 rows.push(row("damping ratio", uncertain(ratio)));
+                rows.extend(self.surest.resonance().iter().flat_map(modes::sharpness));
             }
             _ => rows
                 .push(row("natural frequency", "none: nothing pulls it back to a rest position".to_owned())),
@@ -316,7 +351,7 @@ impl Found {
             .chain(self.no_swing())
             .chain(modes::remark(&self.surest.modes))
             .chain(self.uneven())
-            .chain(self.changing.clone())
+            .chain(self.tried.clone())
             .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
@@ -392,9 +427,6 @@ impl Found {
     }
 }
 
-/// Damping ratio from which no swing is seen.
-const CRITICAL: f64 = 0.95;
-
 /// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
 /// records of noise, white or red, have 4 to 15 % or no frequency.
 const HARDLY_KNOWN: f64 = 0.03;
@@ -407,88 +439,4 @@ const FEW_CYCLES: f64 = 3.0;
 fn is_built_here() -> bool {
     let program = own_program().unwrap_or_default();
     program.ancestors().skip(1).take(2).any(|folder| folder.ends_with("target"))
-}
-
-/// Formats the given reading options as options of the diagnosis.
-fn given(reading: &Reading) -> String {
-    let stated = serde_json::to_value(reading).unwrap_or_default();
-    let usual = serde_json::to_value(Reading::default()).unwrap_or_default();
-    let Value::Object(stated) = stated else { return String::new() };
-    let changed = stated.iter().filter(|(key, value)| usual.get(key.as_str()) != Some(value));
-    let option = |(key, value): (&String, &Value)| {
-        let name = match key.as_str() {
-            "filter" => "where".to_owned(),
-            "from_s" => "from".to_owned(),
-            "to_s" => "to".to_owned(),
-            key => key.replace('_', "-"),
-        };
-        match value {
-            Value::Bool(_) => format!(" --{name}"),
-            Value::String(text) => {
-                format!(" --{name} {}", word(text))
-            }
-            other => format!(" --{name} {other}"),
-        }
-    };
-    changed.map(option).collect()
-}
-
-/// Quotes a word for a shell.
-fn word(text: &str) -> String {
-    let plain = |sign: char| sign.is_alphanumeric() || "-_./=:,+%@".contains(sign);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
-    }
-}
-
-fn path_word(path: &Path) -> String {
-    word(&path.display().to_string())
-}
-
-/// Returns the path of a file relative to a folder; absolute if the folder is not clearly below the working
-/// directory.
-fn path_from(folder: &Path, file: &Path) -> PathBuf {
-    if file.is_absolute() {
-        return file.to_owned();
-    }
-    let below = folder.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    if !below {
-        return std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    }
-    let depth = folder.components().filter(|part| matches!(part, Component::Normal(_))).count();
-    std::iter::repeat_n("..", depth).collect::<PathBuf>().join(file)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{given, path_from, word};
-    use crate::commands::diagnose::arguments::Reading;
-    use std::path::{Path, PathBuf};
-
-    #[test]
-    fn options_that_were_given_are_given_again() {
-        let reading = Reading {
-            value: Some("phi 2".to_owned()),
-            filter: Some("joint=elbow".to_owned()),
-            remove_mean: true,
-            sample_rate: Some(50.0),
-            ..Reading::default()
-        };
-        assert_eq!(given(&Reading::default()), "");
-        assert_eq!(given(&reading), " --value 'phi 2' --where joint=elbow --sample-rate 50.0 --remove-mean");
-    }
-
-    #[test]
-    fn words_are_safe_in_a_shell() {
-        assert_eq!(word("a/b.csv"), "a/b.csv");
-        assert_eq!(word("it's $5"), r"'it'\''s $5'");
-    }
-
-    #[test]
-    fn the_way_back_to_the_log_is_found() {
-        assert_eq!(path_from(Path::new("rig/a"), Path::new("logs/x.csv")), PathBuf::from("../../logs/x.csv"));
-        assert!(path_from(Path::new("../rig"), Path::new("x.csv")).is_absolute());
-    }
 }

@@ -13,7 +13,7 @@ use crate::outcome::Outcome;
 use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use rayon::prelude::*;
-use results::{EstimateSummary, EstimationResult, RESULT_SCHEMA, SeedRow};
+use results::{EstimateSummary, EstimationResult, RESULT_SCHEMA, Resonance, SeedRow, WithInterval};
 use runs::to_csv;
 use serde_json::json;
 
@@ -74,6 +74,10 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
     let uncertainty = input.scaled(estimate.uncertainty, estimate.decay_rate);
     let tolerance = experiment.fit.tolerance_percent;
     let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
+    let zeta = envelope.damping_ratio(estimate.decay_rate);
+    let zeta_interval_95 =
+        uncertainty.map(|known| known.interval_95.map(|bound| envelope.damping_ratio(bound)));
+    let with_interval = WithInterval { value: zeta, interval_95: zeta_interval_95.unwrap_or([f64::NAN; 2]) };
     let worst = scoring::worst(rows.iter().map(|row| row.error_percent));
     EstimationResult {
         schema: RESULT_SCHEMA.to_owned(),
@@ -87,13 +91,13 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         estimate: EstimateSummary {
             decay_rate: estimate.decay_rate,
             log_amplitude: estimate.log_amplitude,
-            zeta: envelope.damping_ratio(estimate.decay_rate),
+            zeta,
             std_error: uncertainty.map(|known| known.std_error),
             interval_95: uncertainty.map(|known| known.interval_95),
             zeta_std_error: uncertainty
                 .map(|known| envelope.damping_ratio_error(estimate.decay_rate, known.std_error)),
-            zeta_interval_95: uncertainty
-                .map(|known| known.interval_95.map(|bound| envelope.damping_ratio(bound))),
+            zeta_interval_95,
+            resonance: Resonance::of_swing(envelope.omega_rad_s(), with_interval),
             reached: estimate.stop.reached,
             stopped_because: estimate.stop.because.clone(),
         },

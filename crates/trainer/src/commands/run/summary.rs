@@ -3,10 +3,10 @@
 use crate::terminal::table::table;
 use estimator::Ablation;
 use record::two_digits;
-use report::format;
+use report::{format, half_power_width, quality_factor};
 use results::{
     ComparisonResult, DataSummary, EstimationResult, Family, MethodOutcome, MethodRow, OracleSummary, Origin,
-    PipelineOutcome, PipelineRow, TruthComparison,
+    PipelineOutcome, PipelineRow, Resonance, TruthComparison,
 };
 use std::path::Path;
 
@@ -79,12 +79,17 @@ fn numbers(result: &EstimationResult) -> String {
     // The frequency is taken as known, so the rate has the same relative error as the ratio.
     let error = estimate.zeta_std_error.unwrap_or_default();
     let rate_error = error * estimate.decay_rate / estimate.zeta;
+    let said = |words: fn(&Resonance) -> String| {
+        estimate.resonance.as_ref().map_or_else(|| "none: no resonance".to_owned(), words)
+    };
     let mut rows = vec![
         row("pipeline", result.envelope.pipeline_in_words()),
         row(result.envelope.counted(), result.envelope.peaks.to_string()),
         row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),
         row("decay rate λ", format!("{} 1/s", format::with_uncertainty(estimate.decay_rate, rate_error))),
         row("damping ratio ζ", ratio(estimate.zeta, error)),
+        row("quality factor 1/(2ζ)", said(quality_factor)),
+        row("half-power width 2ζf", said(|resonance| format!("{} Hz", half_power_width(resonance)))),
         row(
             "ζ by closed-form least squares",
             format!(
@@ -323,9 +328,15 @@ fn pipelines(pipelines: &[PipelineRow]) -> String {
         "closed-form least squares on the record, by pipeline and clock (* in force):\n{}",
         table(&header, rows)
     );
+    let mut told: Vec<(&str, &str)> = Vec::new();
     for row in pipelines {
-        if let PipelineOutcome::Failed { reason } = &row.outcome {
-            text.push_str(&format!("\n{}, {}: {reason}", row.pipeline, row.clock));
+        let PipelineOutcome::Failed { reason } = &row.outcome else { continue };
+        // Advice on pipelines that are not in force helps nobody, and the clocks fail alike.
+        let (reason, _) = reason.split_once(". ").unwrap_or((reason, ""));
+        let failed = (row.pipeline.as_str(), reason.trim_end_matches('.'));
+        if !told.contains(&failed) {
+            told.push(failed);
+            text.push_str(&format!("\n{}: none, since {}", failed.0, failed.1));
         }
     }
     text

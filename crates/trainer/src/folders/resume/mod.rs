@@ -204,13 +204,14 @@ fn check(folder: &RunFolder, begun: &Start, beginning: &Beginning<'_>) -> Result
 /// Checks that the records are those with which the run was begun.
 pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeError> {
     for expected in &begun.data {
-        let found = data.iter().find(|found| found.path == expected.path);
-        if found != Some(expected) {
-            return Err(ResumeError::OtherData {
-                file: expected.path.clone(),
-                expected: expected.digest.clone(),
-                found: found.map_or_else(|| "nothing".to_owned(), |found| found.digest.clone()),
-            });
+        let file = expected.path.clone();
+        match data.iter().find(|found| found.path == expected.path) {
+            None => return Err(ResumeError::NoData { file }),
+            Some(found) if found != expected => {
+                let (expected, found) = (expected.digest.clone(), found.digest.clone());
+                return Err(ResumeError::OtherData { file, expected, found });
+            }
+            Some(_) => {}
         }
     }
     Ok(())
