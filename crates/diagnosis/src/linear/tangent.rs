@@ -26,12 +26,19 @@ pub(crate) struct Step {
     to: Vector2<f64>,
 }
 
+/// Longest step that the series is summed for, in radians and decay times; a longer one is made of two.
+const LONGEST: f64 = 4.0;
+
 /// Number of terms of the exponential's series.
 const TERMS: usize = 26;
 
 impl Step {
     /// Computes the step over a time h in seconds of I·δ̈ + γ·δ̇ + κ·δ = f, with f linear in time.
     pub(crate) fn of(h: f64, stiffness: f64, damping: f64, inertia: f64) -> Self {
+        let size = h * ((stiffness / inertia).abs().sqrt() + (damping / inertia).abs());
+        if size > LONGEST && size.is_finite() {
+            return Self::of(0.5 * h, stiffness, damping, inertia).twice();
+        }
         let rate = Matrix2::new(0.0, 1.0, -stiffness / inertia, -damping / inertia) * h;
         let (mut transition, mut one, mut two) = (Matrix2::zeros(), Matrix2::zeros(), Matrix2::zeros());
         let mut power = Matrix2::identity();
@@ -45,6 +52,16 @@ impl Step {
         }
         let push = Vector2::new(0.0, h / inertia);
         Self { transition, from: (one - two) * push, to: two * push }
+    }
+
+    /// Returns the step that is as long as two of these.
+    fn twice(self) -> Self {
+        let Self { transition, from, to } = self;
+        Self {
+            transition: transition * transition,
+            from: transition * (from + 0.5 * to) + 0.5 * from,
+            to: 0.5 * (transition * to + from) + to,
+        }
     }
 
     /// Returns the deviation and its rate after the step.
@@ -271,4 +288,25 @@ pub(crate) fn matrix(rows: usize, columns: &[Vec<f64>]) -> DMatrix<f64> {
         // Columns are as long as there are rows.
         columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Step;
+    use nalgebra::Vector2;
+
+    /// The inertia of a stiff joint shows for a thousandth of a step: the position then follows the torque as that of
+    /// a damper and a spring, x' = (f − κ·x)/γ, which a ramp of torque moves in closed form.
+    #[test]
+    fn a_stiff_step_is_that_of_a_damper_and_a_spring() {
+        let (h, stiffness, damping) = (0.02, 9.4, 4.4);
+        let step = Step::of(h, stiffness, damping, 1e-6);
+        let (from, to) = (0.3, 0.7);
+        let after = step.after(Vector2::new(0.1, 0.0), from, to);
+        let (time, slope) = (damping / stiffness, (to - from) / h / stiffness);
+        let steady = |t: f64| from / stiffness + slope * (t - time);
+        let expected = steady(h) + (0.1 - steady(0.0)) * (-h / time).exp();
+        assert!((after.x / expected - 1.0).abs() < 1e-5, "{} {expected}", after.x);
+        assert!((after.y - (to - stiffness * after.x) / damping).abs() < 1e-5 * after.y.abs());
+    }
 }
