@@ -23,6 +23,7 @@ const STRENGTHS: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[0.05, 40.0, 0.2]),
     ("input_delay", &[0.03]),
     ("input_saturation", &[40.0]),
+    ("torque_limit", &[90.0]),
     ("sensor_lag", &[0.01]),
     ("sensor_nonlinearity", &[0.02, 0.4]),
     ("sensor_drift", &[0.01]),

@@ -36,6 +36,7 @@ pub(crate) const CASES: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[0.05, 180.0, 0.2]),
     ("input_delay", &[0.0031]),
     ("input_saturation", &[8.0]),
+    ("torque_limit", &[180.0]),
 ];
 
 /// Every effect at once, each weaker, so that none hides the others.
@@ -56,6 +57,7 @@ pub(crate) const EVERYTHING: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[0.05, 180.0, 0.2]),
     ("input_delay", &[0.0031]),
     ("input_saturation", &[8.0]),
+    ("torque_limit", &[190.0]),
 ];
 
 /// A command with a torque of up to 12 and a rising frequency, 50 samples a second.

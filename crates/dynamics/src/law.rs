@@ -40,6 +40,21 @@ pub struct Moment<S> {
     pub region: i8,
 }
 
+impl<S: Scalar> Moment<S> {
+    /// Returns the torque of a servo's drive, whose spring and damper are software: the input's torque with
+    /// the nominal spring and damping, τ − k·(θ − θ_rest) − c·θ̇.
+    #[inline]
+    pub fn drive_torque(&self) -> S {
+        self.proportional_torque() - self.nominal.damping * self.velocity
+    }
+
+    /// Returns the part of the drive's torque in proportion to its error, τ − k·(θ − θ_rest).
+    #[inline]
+    pub fn proportional_torque(&self) -> S {
+        self.input - self.nominal.stiffness * (self.position - self.nominal.rest_angle)
+    }
+}
+
 /// Distances to the ends of a region: positive inside, zero at the edge. `None` if there is no edge.
 pub type Margins<S> = [Option<S>; 2];
 

@@ -197,6 +197,7 @@ registry! {
     FlexibleCoupling,
     InputDelay,
     InputSaturation,
+    TorqueLimit,
     }
     unnamed {
     PositionTorque,

@@ -136,11 +136,14 @@ fn the_signs_are_those_of_the_equations() {
     use SystemEffect::{
         AsymmetricStiffness, Backlash, ConstantTorque, CoulombFriction, CubicStiffness, DampingDrift,
         EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation, PeriodicForcing,
-        PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction, UnlistedDamping, UnlistedStiffness,
+        PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction, TorqueLimit, UnlistedDamping,
+        UnlistedStiffness,
     };
     let at = moment(0.5, 0.8, 0, 0.0, NONE);
     // Depth beyond the stop at 0.3.
     let depth = 0.2;
+    // Torque of a servo's drive: input, spring and damping.
+    let drive = 1.7 - 5.0 * 0.4 - 0.6 * 0.8;
     let expected = [
         (CoulombFriction, 0, -0.7),
         (StribeckFriction, 0, -0.4),
@@ -168,6 +171,9 @@ fn the_signs_are_those_of_the_equations() {
         (InputSaturation, 0, 0.0),
         (InputSaturation, 1, 0.7 - 1.7),
         (InputSaturation, -1, -0.7 - 1.7),
+        (TorqueLimit, 0, 0.0),
+        (TorqueLimit, 1, 0.7 - drive),
+        (TorqueLimit, -1, -0.7 - drive),
     ];
     for &effect in SystemEffect::ALL {
         assert!(expected.iter().any(|(other, ..)| *other == effect));

@@ -40,6 +40,7 @@ const CASES: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[5e-5, 0.05, 2e-5]),
     ("input_delay", &[0.05]),
     ("input_saturation", &[8e-3]),
+    ("torque_limit", &[0.06]),
     ("unknown", &[4e-3, 18.0, 0.7]),
     ("unlisted_damping", &[1e-5, 5e-3]),
     ("unlisted_stiffness", &[0.2]),

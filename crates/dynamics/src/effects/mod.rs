@@ -17,6 +17,7 @@ mod position_torque;
 mod quadratic_drag;
 mod stiffness_drift;
 mod stribeck_friction;
+mod torque_limit;
 mod unlisted_damping;
 mod unlisted_stiffness;
 
@@ -37,5 +38,6 @@ pub use position_torque::PositionTorque;
 pub use quadratic_drag::QuadraticDrag;
 pub use stiffness_drift::StiffnessDrift;
 pub use stribeck_friction::StribeckFriction;
+pub use torque_limit::TorqueLimit;
 pub use unlisted_damping::UnlistedDamping;
 pub use unlisted_stiffness::UnlistedStiffness;

@@ -41,6 +41,7 @@ mod stiffness_drift;
 mod stribeck_friction;
 mod timestamp_batching;
 mod timestamp_jitter;
+mod torque_limit;
 mod trial_effect;
 
 use crate::hidden::Bank;
@@ -67,6 +68,7 @@ pub(crate) static REGISTRY: &[TrialEffect] = &[
     flexible_coupling::EFFECT,
     input_delay::EFFECT,
     input_saturation::EFFECT,
+    torque_limit::EFFECT,
     sensor_lag::EFFECT,
     sensor_nonlinearity::EFFECT,
     sensor_drift::EFFECT,
@@ -124,7 +126,7 @@ mod tests {
     #[test]
     fn banks_hide_what_can_be_seen_there() {
         let driven = hidden_in(Bank::Driven);
-        assert_eq!(driven.iter().position(|effect| !effect.needs_input), Some(3));
+        assert_eq!(driven.iter().position(|effect| !effect.needs_input), Some(4));
         assert!(
             REGISTRY
                 .iter()

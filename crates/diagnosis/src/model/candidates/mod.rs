@@ -56,13 +56,14 @@ pub(crate) mod sensor_quantization;
 pub(crate) mod sensor_saturation;
 pub(crate) mod stiffness_drift;
 pub(crate) mod stribeck_friction;
+pub(crate) mod torque_limit;
 mod unlisted_damping;
 mod unlisted_stiffness;
 
 use crate::model::candidate::Candidate;
 pub(crate) use along::{Along, Lines, Mode, padded};
 pub(crate) use evidence_class::EvidenceClass;
-pub(crate) use law::{CandidateLaw, grid, secant};
+pub(crate) use law::{CandidateLaw, grid, has_drive, secant};
 pub(crate) use main_mode::MainMode;
 pub(crate) use parameter::Parameter;
 pub(crate) use polar::Polar;
@@ -94,4 +95,5 @@ pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&sensor_drift::SensorDrift),
     Candidate::new(&clock_drift::ClockDrift),
     Candidate::new(&sensor_quantization::SensorQuantization),
+    Candidate::new(&torque_limit::TorqueLimit),
 ];
