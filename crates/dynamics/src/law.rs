@@ -86,9 +86,9 @@ pub trait Law {
         [S::from(0.0); MOST_HIDDEN]
     }
 
-    /// Returns the torque up to which dry friction holds the system at rest; `None` if the effect is not dry
-    /// friction.
-    fn holding_torque<S: Scalar>(_values: &Values<S>) -> Option<S> {
+    /// Returns the torque up to which dry friction holds the system at rest at a moment; `None` if the effect is
+    /// not dry friction.
+    fn holding_torque<S: Scalar>(_values: &Values<S>, _moment: &Moment<S>) -> Option<S> {
         None
     }
 

@@ -353,6 +353,7 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         torque: stiffness * amplitude,
         input_torque,
         drive_torque,
+        drive_error: if nominal.stiffness() > 0.0 { drive_torque / nominal.stiffness() } else { 0.0 },
         duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
         interval,
         rest_moved: rest - nominal.rest_angle(),

@@ -35,14 +35,18 @@ pub(crate) mod constant_torque;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
 pub(crate) mod damping_drift;
+pub(crate) mod directional_friction;
+pub(crate) mod drive_dead_band;
 pub(crate) mod end_stop;
 mod evidence_class;
 pub(crate) mod flexible_coupling;
+pub(crate) mod friction_drift;
 pub(crate) mod gravity;
 pub(crate) mod hysteresis;
 pub(crate) mod input_delay;
 pub(crate) mod input_saturation;
 mod law;
+pub(crate) mod load_friction;
 mod main_mode;
 mod parameter;
 pub(crate) mod periodic_forcing;
@@ -54,6 +58,7 @@ pub(crate) mod sensor_lag;
 pub(crate) mod sensor_nonlinearity;
 pub(crate) mod sensor_quantization;
 pub(crate) mod sensor_saturation;
+pub(crate) mod speed_torque_limit;
 pub(crate) mod stiffness_drift;
 pub(crate) mod stribeck_friction;
 pub(crate) mod torque_limit;
@@ -96,4 +101,9 @@ pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&clock_drift::ClockDrift),
     Candidate::new(&sensor_quantization::SensorQuantization),
     Candidate::new(&torque_limit::TorqueLimit),
+    Candidate::new(&load_friction::LoadFriction),
+    Candidate::new(&directional_friction::DirectionalFriction),
+    Candidate::new(&friction_drift::FrictionDrift),
+    Candidate::new(&drive_dead_band::DriveDeadBand),
+    Candidate::new(&speed_torque_limit::SpeedTorqueLimit),
 ];
