@@ -9,19 +9,9 @@ use dynamics::{Effect, Nominal, SystemEffect};
 /// relative to the speed of a swing as large as the record's.
 const LIMITS: [(f64, f64); 5] = [(1.0, 0.3), (1.0, 0.8), (0.6, 0.3), (0.6, 0.8), (0.35, 0.5)];
 
-/// Torques and no-load speeds of a strong limit.
-const DENSE_LIMITS: [(f64, f64); 10] = [
-    (1.5, 0.15),
-    (1.5, 0.4),
-    (1.0, 0.15),
-    (1.0, 0.3),
-    (1.0, 0.6),
-    (1.0, 1.2),
-    (0.6, 0.2),
-    (0.6, 0.5),
-    (0.6, 1.0),
-    (0.35, 0.4),
-];
+/// Torques and no-load speeds of a strong limit, each with each.
+const DENSE_TORQUES: [f64; 5] = [1.5, 1.0, 0.7, 0.47, 0.32];
+const DENSE_SPEEDS: [f64; 5] = [0.15, 0.25, 0.4, 0.63, 1.0];
 
 /// Servo whose torque is limited by its speed: the largest torque at rest, and the speed at which none is left.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +57,9 @@ impl CandidateLaw for SpeedTorqueLimit {
     }
 
     fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
-        at(&DENSE_LIMITS, facts)
+        let pairs =
+            DENSE_TORQUES.iter().flat_map(|torque| DENSE_SPEEDS.iter().map(|speed| (*torque, *speed)));
+        at(&pairs.collect::<Vec<_>>(), facts)
     }
 
     /// The shapes are the parameters themselves.
