@@ -34,7 +34,7 @@ impl<S: Scalar> Field<S> {
     ) {
         if mode.sticks() {
             let torque = self.torque(state, mode);
-            if let Some(holding) = self.holding_torque() {
+            if let Some(holding) = self.holding_torque(state, mode) {
                 visit(Edge::BreakAway { forward: true }, holding - torque);
                 visit(Edge::BreakAway { forward: false }, holding + torque);
             }

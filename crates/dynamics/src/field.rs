@@ -150,9 +150,10 @@ impl<S: Scalar> Field<S> {
             .fold(nominal, |sum, (term, moment)| sum + term.effect.torque(&term.values, &moment))
     }
 
-    /// Returns the torque up to which dry friction holds; `None` without dry friction.
-    pub(crate) fn holding_torque(&self) -> Option<S> {
-        let holding = self.terms.iter().filter_map(|term| term.effect.holding_torque(&term.values));
+    /// Returns the torque up to which dry friction holds a state at rest; `None` without dry friction.
+    pub(crate) fn holding_torque(&self, state: &State<S>, mode: &Mode) -> Option<S> {
+        let moments = self.moments(state, mode);
+        let holding = moments.filter_map(|(term, moment)| term.effect.holding_torque(&term.values, &moment));
         holding.reduce(|sum, torque| sum + torque)
     }
 

@@ -37,6 +37,12 @@ pub(crate) const CASES: &[(&str, &[f64])] = &[
     ("input_delay", &[0.0031]),
     ("input_saturation", &[8.0]),
     ("command_derivative", &[0.02]),
+    ("torque_limit", &[180.0]),
+    ("load_friction", &[0.3, 0.004]),
+    ("directional_friction", &[1.0, 0.8]),
+    ("friction_drift", &[1.0, -0.05]),
+    ("drive_dead_band", &[0.01]),
+    ("speed_torque_limit", &[250.0, 30.0]),
 ];
 
 /// Every effect at once, each weaker, so that none hides the others.
@@ -58,6 +64,12 @@ pub(crate) const EVERYTHING: &[(&str, &[f64])] = &[
     ("input_delay", &[0.0031]),
     ("input_saturation", &[8.0]),
     ("command_derivative", &[0.002]),
+    ("torque_limit", &[190.0]),
+    ("load_friction", &[0.05, 0.001]),
+    ("directional_friction", &[0.1, 0.08]),
+    ("friction_drift", &[0.1, -0.05]),
+    ("drive_dead_band", &[0.004]),
+    ("speed_torque_limit", &[260.0, 40.0]),
 ];
 
 /// A command with a torque of up to 12 and a rising frequency, 50 samples a second.

@@ -42,6 +42,21 @@ pub struct Moment<S> {
     pub region: i8,
 }
 
+impl<S: Scalar> Moment<S> {
+    /// Returns the torque of a servo's drive, whose spring and damper are software: the input's torque with
+    /// the nominal spring and damping, τ − k·(θ − θ_rest) − c·θ̇.
+    #[inline]
+    pub fn drive_torque(&self) -> S {
+        self.proportional_torque() - self.nominal.damping * self.velocity
+    }
+
+    /// Returns the part of the drive's torque in proportion to its error, τ − k·(θ − θ_rest).
+    #[inline]
+    pub fn proportional_torque(&self) -> S {
+        self.input - self.nominal.stiffness * (self.position - self.nominal.rest_angle)
+    }
+}
+
 /// Distances to the ends of a region: positive inside, zero at the edge. `None` if there is no edge.
 pub type Margins<S> = [Option<S>; 2];
 
@@ -73,9 +88,9 @@ pub trait Law {
         [S::from(0.0); MOST_HIDDEN]
     }
 
-    /// Returns the torque up to which dry friction holds the system at rest; `None` if the effect is not dry
-    /// friction.
-    fn holding_torque<S: Scalar>(_values: &Values<S>) -> Option<S> {
+    /// Returns the torque up to which dry friction holds the system at rest at a moment; `None` if the effect is
+    /// not dry friction.
+    fn holding_torque<S: Scalar>(_values: &Values<S>, _moment: &Moment<S>) -> Option<S> {
         None
     }
 

@@ -64,8 +64,8 @@ macro_rules! system_effects {
             }
 
             /// Calls [`Law::holding_torque`] of the effect.
-            pub fn holding_torque<S: Scalar>(self, values: &Values<S>) -> Option<S> {
-                match self { $(Self::$name => effects::$name::holding_torque(values),)+ }
+            pub fn holding_torque<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> Option<S> {
+                match self { $(Self::$name => effects::$name::holding_torque(values, moment),)+ }
             }
 
             /// Calls [`Law::input_delay`] of the effect.
@@ -198,6 +198,12 @@ registry! {
     InputDelay,
     InputSaturation,
     CommandDerivative,
+    TorqueLimit,
+    LoadFriction,
+    DirectionalFriction,
+    FrictionDrift,
+    DriveDeadBand,
+    SpeedTorqueLimit,
     }
     unnamed {
     PositionTorque,

@@ -25,6 +25,7 @@ fn lists(nominal: &Nominal) -> Vec<Vec<(&'static str, Vec<f64>)>> {
         vec![],
         vec![friction()],
         vec![("stribeck_friction", vec![torque(0.002), torque(0.004), 0.1])],
+        vec![("load_friction", vec![torque(0.002), 0.1])],
         vec![drag()],
         vec![("cubic_stiffness", vec![torque(0.3)])],
         vec![weight()],
@@ -98,7 +99,7 @@ fn from_balance_a_motion_gets_under_way() {
         let list = lists(&nominal).swap_remove(set);
         let list: Vec<(&str, &[f64])> = list.iter().map(|(id, values)| (*id, values.as_slice())).collect();
         let system = with(nominal, &list);
-        let holds = system.field().holding_torque().is_some();
+        let holds = system.effects().iter().any(|own| own.id().ends_with("friction"));
         // Within the hold of dry friction every position is one of rest.
         let beside = if holds && round % 2 == 0 { 0.001 } else { 0.0 };
         let start = Start::release(balance(&system) + beside);

@@ -186,7 +186,7 @@ impl Field<f64> {
         }
         let stuck = self.moving(state, 0.0);
         let torque = self.torque(state, &stuck);
-        match self.holding_torque() {
+        match self.holding_torque(state, &stuck) {
             // A balance to rounding holds; the further course of the torque shows if the body is about to
             // break away.
             Some(holding) if torque.abs() <= holding + self.balance(state) => stuck,
@@ -198,9 +198,10 @@ impl Field<f64> {
     /// Returns the amount by which a torque may miss the holding torque of dry friction and still balance it,
     /// in N·m: the remainder of torques that cancel is rounding. At rest only.
     pub(crate) fn balance(&self, state: &State<f64>) -> f64 {
-        let torque = self.over::<Rounded>().torque(&state.over(), &self.moving(state, 0.0));
+        let stuck = self.moving(state, 0.0);
+        let torque = self.over::<Rounded>().torque(&state.over(), &stuck);
         // Without dry friction nothing is held, and only rounding is left.
-        BALANCE * self.holding_torque().unwrap_or(0.0) + ROUNDING * torque.error
+        BALANCE * self.holding_torque(state, &stuck).unwrap_or(0.0) + ROUNDING * torque.error
     }
 
     /// Returns the mode of a state that moves in a direction, or sticks if the direction is 0.

@@ -136,13 +136,16 @@ fn dissipative_laws_take_energy_out_whatever_the_state() {
 fn the_signs_are_those_of_the_equations() {
     use SystemEffect::{
         AsymmetricStiffness, Backlash, CommandDerivative, ConstantTorque, CoulombFriction, CubicStiffness,
-        DampingDrift, EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation,
-        PeriodicForcing, PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction, UnlistedDamping,
+        DampingDrift, DirectionalFriction, DriveDeadBand, EndStop, FlexibleCoupling, FrictionDrift, Gravity,
+        Hysteresis, InputDelay, InputSaturation, LoadFriction, PeriodicForcing, PositionTorque,
+        QuadraticDrag, SpeedTorqueLimit, StiffnessDrift, StribeckFriction, TorqueLimit, UnlistedDamping,
         UnlistedStiffness,
     };
     let at = moment(0.5, 0.8, 0, 0.0, NONE);
     // Depth beyond the stop at 0.3.
     let depth = 0.2;
+    // Torque of a servo's drive: input, spring and damping.
+    let drive = 1.7 - 5.0 * 0.4 - 0.6 * 0.8;
     let expected = [
         (CoulombFriction, 0, -0.7),
         (StribeckFriction, 0, -0.4),
@@ -171,6 +174,19 @@ fn the_signs_are_those_of_the_equations() {
         (InputSaturation, 0, 0.0),
         (InputSaturation, 1, 0.7 - 1.7),
         (InputSaturation, -1, -0.7 - 1.7),
+        (TorqueLimit, 0, 0.0),
+        (TorqueLimit, 1, 0.7 - drive),
+        (TorqueLimit, -1, -0.7 - drive),
+        (LoadFriction, 1, -(0.7 + 0.9 * drive)),
+        (LoadFriction, -1, -(0.7 - 0.9 * drive)),
+        (DirectionalFriction, 0, -(0.7 + 0.45)),
+        (FrictionDrift, 0, -0.7 * (0.9 * 2.3_f64).exp()),
+        (DriveDeadBand, 0, -(1.7 - 5.0 * 0.4)),
+        (DriveDeadBand, 1, -5.0 * 0.7),
+        (DriveDeadBand, -1, 5.0 * 0.7),
+        (SpeedTorqueLimit, 0, 0.0),
+        (SpeedTorqueLimit, 1, 0.7 * (1.0 - 0.8 / 0.9) - drive),
+        (SpeedTorqueLimit, -1, -0.7 - drive),
     ];
     for &effect in SystemEffect::ALL {
         assert!(expected.iter().any(|(other, ..)| *other == effect));

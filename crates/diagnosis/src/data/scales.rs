@@ -21,6 +21,10 @@ pub(crate) struct Scales {
     pub(crate) torque: f64,
     /// Largest torque of the input; 0 without an input.
     pub(crate) input_torque: f64,
+    /// Largest torque of a servo's drive that moves as the records do, without its damping; 0 without an input.
+    pub(crate) drive_torque: f64,
+    /// Largest error of that drive, as a position: its torque over the nominal stiffness; 0 without either.
+    pub(crate) drive_error: f64,
     /// Length of the longest record in seconds.
     pub(crate) duration: f64,
     /// Median time between samples, in seconds.

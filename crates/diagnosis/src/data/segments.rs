@@ -12,7 +12,7 @@ use crate::error::DiagnosisError;
 use crate::matrices::element;
 use crate::noise::periodogram::{dominant_frequency, share};
 use crate::noise::statistics::{median, quantile};
-use dynamics::{Hold, Input, NominalSimulator};
+use dynamics::{Hold, Input, Nominal, NominalSimulator};
 use record::Quantity;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -328,8 +328,14 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
     let interval = median(&steps).max(f64::MIN_POSITIVE);
     let input = records.iter().filter_map(|record| record.input.as_ref()).flatten();
     let gain = nominal.input_gain().abs();
+    let input_torque = input.fold(0.0, |most: f64, u| most.max(u.abs())) * gain;
     let inertia = nominal.inertia();
     let stiffness = inertia * frequency * frequency;
+    let drive_torque = match quantity {
+        Quantity::Position => drive_torque(records, nominal),
+        _ if input_torque > 0.0 => input_torque + nominal.stiffness() * amplitude,
+        _ => 0.0,
+    };
     let reading = values().fold(0.0, |most: f64, value| most.max(value.abs()));
     let speed = match quantity {
         _ if omega != 0.0 => amplitude * frequency,
@@ -345,7 +351,9 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         speed,
         frequency,
         torque: stiffness * amplitude,
-        input_torque: input.fold(0.0, |most: f64, u| most.max(u.abs())) * gain,
+        input_torque,
+        drive_torque,
+        drive_error: if nominal.stiffness() > 0.0 { drive_torque / nominal.stiffness() } else { 0.0 },
         duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
         interval,
         rest_moved: rest - nominal.rest_angle(),
@@ -358,6 +366,19 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         tolerance: Scales::UNKNOWN_NOISE,
         noise: 0.0,
     }
+}
+
+/// Returns the largest torque of input and nominal spring together, from the positions of driven records. Where a
+/// servo starts from rest the spring of its drive is stretched most, and its damping has no torque yet.
+fn drive_torque(records: &[Observations], nominal: &Nominal) -> f64 {
+    let of = |record: &Observations| {
+        let inputs = record.input.iter().flatten();
+        let spring = |value: &f64| nominal.stiffness() * (value - nominal.rest_angle());
+        let torques =
+            inputs.zip(&record.values).map(|(u, value)| (nominal.input_gain() * u - spring(value)).abs());
+        torques.fold(0.0, f64::max)
+    };
+    records.iter().map(of).fold(0.0, f64::max)
 }
 
 /// Returns `true` if the simulator has Coulomb friction whose torque is recalibrated.

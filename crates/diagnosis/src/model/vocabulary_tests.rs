@@ -17,6 +17,8 @@ const FACTS: Scales = Scales {
     frequency: 22.0,
     torque: 340.0,
     input_torque: 1.0,
+    drive_torque: 340.0,
+    drive_error: 0.7,
     duration: 25.0,
     interval: 1.0 / 260.0,
     rest_moved: 0.0,

@@ -51,13 +51,20 @@ pub(crate) struct Proposed {
 }
 
 impl Proposed {
-    /// Proposes the best sets of up to `most` laws: with a free rest angle, and with the stated one.
+    /// Proposes the best sets of up to `most` laws: with a free rest angle, and with the stated one. The torque of a
+    /// servo's drive follows from the coefficients themselves, and calibration without a missing limit of it may put
+    /// them far off: a driven record is also tried with the stated ones.
     pub(crate) fn of(data: &Data, calibrated: &Fit, candidates: &[Candidate], most: usize) -> Self {
         let hypothesis = &calibrated.hypothesis;
         let stated =
             hypothesis.calibrated.contains(&Calibrated::RestAngle).then(|| hypothesis.nominal.rest_angle());
-        let rests: Vec<Option<f64>> = [None].into_iter().chain(stated.map(Some)).collect();
-        let found = rests.par_iter().map(|rest| WeakForm::of(data, calibrated, candidates, *rest));
+        let own = hypothesis.calibrated_nominal(&calibrated.point.globals).ok();
+        let given = (data.facts.drive_torque > 0.0).then_some((hypothesis.nominal, None));
+        let rests = [None].into_iter().chain(stated.map(Some));
+        let tried: Vec<(Nominal, Option<f64>)> =
+            given.into_iter().chain(rests.filter_map(|rest| Some((own?, rest)))).collect();
+        let found =
+            tried.par_iter().map(|(own, rest)| WeakForm::of(data, calibrated, candidates, (own, *rest)));
         let found: Vec<Option<(Self, Vec<Begun>)>> =
             found.map(|own| own.map(|own| (own.motion(), own.sets(most)))).collect();
         found.into_iter().flatten().fold(Self::default(), |all, (motion, sets)| Self {
@@ -93,12 +100,16 @@ struct WeakForm<'a> {
 }
 
 impl<'a> WeakForm<'a> {
-    /// Sets up the equations of a data set; `None` if there are no laws or too few samples. Laws about the rest
+    /// Sets up the equations of a data set about an oscillator; `None` if there are no laws or too few samples. Laws about the rest
     /// angle, such as a play, have their middle at the `rest` angle if one is given, and a constant torque is
     /// then one of the laws; otherwise the rest angle is free.
-    fn of(data: &'a Data, calibrated: &'a Fit, candidates: &[Candidate], rest: Option<f64>) -> Option<Self> {
+    fn of(
+        data: &'a Data,
+        calibrated: &'a Fit,
+        candidates: &[Candidate],
+        (found, rest): (&Nominal, Option<f64>),
+    ) -> Option<Self> {
         let hypothesis = &calibrated.hypothesis;
-        let found = hypothesis.calibrated_nominal(&calibrated.point.globals).ok()?;
         let own = found.coefficients();
         let rest_angle = rest.unwrap_or(own.rest_angle);
         let nominal = found.with_coefficients(Coefficients { rest_angle, ..own }).ok()?;

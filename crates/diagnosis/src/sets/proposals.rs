@@ -105,7 +105,7 @@ pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) ->
 }
 
 /// Proposes to replace each member by its generalization, at each of its shapes. The first parameter keeps
-/// the member's size, further strengths begin at half of it. The linearization cannot distinguish these: at
+/// the member's size, further strengths of the same unit begin at half of it. The linearization cannot distinguish these: at
 /// the special case the shape has no effect.
 pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
@@ -118,7 +118,7 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
                 let values = parameters.iter().zip(shape).enumerate();
                 let values = values.map(|(place, (parameter, shape))| match place {
                     0 => *size,
-                    _ if parameter.strength => 0.5 * size,
+                    _ if parameter.strength && general.quantity(place) == general.quantity(0) => 0.5 * size,
                     _ => shape,
                 });
                 proposals.push(proposal(data, base, &[special], &[(general, values.collect())]));

@@ -43,7 +43,7 @@ impl Law for CoulombFriction {
         -torque * moment.direction
     }
 
-    fn holding_torque<S: Scalar>(&[torque, ..]: &Values<S>) -> Option<S> {
+    fn holding_torque<S: Scalar>(&[torque, ..]: &Values<S>, _: &Moment<S>) -> Option<S> {
         Some(torque)
     }
 }

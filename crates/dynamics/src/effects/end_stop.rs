@@ -51,7 +51,8 @@ const DESCRIPTION: Description = Description {
 
 /// Stop on one side (Hunt–Crossley contact with a linear spring): the torque −k_s·p·max(0, 1 + χ·ṗ) away from
 /// the stop, where p > 0 is the depth beyond θ_s. It starts from zero at contact, takes energy out, and never
-/// pulls. The stop lies on the side of θ_s away from the rest angle.
+/// pulls. The stop lies on the side of θ_s away from the rest angle. It is also the contact of a joint with an
+/// obstacle at an angle, stiff and damped.
 ///
 /// Regions, positive for a stop above the rest angle and negative for one below: ±1 free, ±2 pressing, ±3 in
 /// contact but receding faster than the contact can follow.

@@ -80,7 +80,7 @@ impl Law for StribeckFriction {
         }
     }
 
-    fn holding_torque<S: Scalar>(&[_, static_torque, ..]: &Values<S>) -> Option<S> {
+    fn holding_torque<S: Scalar>(&[_, static_torque, ..]: &Values<S>, _: &Moment<S>) -> Option<S> {
         Some(static_torque)
     }
 

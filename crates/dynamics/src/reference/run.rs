@@ -242,7 +242,10 @@ impl<'a> Run<'a> {
     /// Returns the tail of the torque's series. While stuck nothing changes but the torque: the step has to
     /// resolve it, or a break-away is missed.
     fn torque_tail(&self, step: &Step) -> f64 {
-        let holding = self.field.holding_torque().unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
+        let here = state(self.time, &self.vector, self.drive.torque(self.time));
+        let holding = self.field.holding_torque(&here, &self.mode);
+        // Without dry friction nothing holds.
+        let holding = holding.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
         let (mut last, mut before) = (0.0, 0.0);
         let [.., lower, upper] = self.gauss.analysis.as_slice() else { return 0.0 };
         for (((node, stage), upper), lower) in self.gauss.nodes.iter().zip(&step.stages).zip(upper).zip(lower)
@@ -253,7 +256,7 @@ impl<'a> Run<'a> {
             before += lower * torque;
         }
         // If large torques cancel, the apparent tail is their rounding, and no step is too long.
-        let rounding = self.field.balance(&state(self.time, &self.vector, self.drive.torque(self.time)));
+        let rounding = self.field.balance(&here);
         (f64::max(last.abs(), 0.1 * before.abs()) - rounding).max(0.0) / holding
     }
 

@@ -133,9 +133,10 @@ fn with_every_effect_on_the_energy_balances() {
             let largest = account.work.iter().fold(0.0_f64, |largest, work| largest.max(work.abs()));
             let idle = account.worker == Worker::Effect("input_delay");
             assert_eq!(largest > 1e-3, !idle, "{:?}: {largest}", account.worker);
-            let dissipative = ["coulomb_friction", "stribeck_friction", "quadratic_drag"];
+            let dissipative =
+                |id: &str| id.ends_with("_friction") || id == "friction_drift" || id == "quadratic_drag";
             if account.worker == Worker::Damping
-                || matches!(account.worker, Worker::Effect(id) if dissipative.contains(&id))
+                || matches!(account.worker, Worker::Effect(id) if dissipative(id))
             {
                 assert!(account.work.windows(2).all(|pair| pair[1] <= pair[0] + 1e-12));
             }

@@ -19,7 +19,7 @@ impl March<'_> {
         let point = self.point();
         let field = &self.model.field;
         // At rest the excess of the torque over the hold may be rounding; its further course is not.
-        let rests = point.velocity == 0.0 && field.holding_torque().is_some();
+        let rests = point.velocity == 0.0 && field.holding_torque(&point, &self.mode).is_some();
         let balance = if rests { field.balance(&point) } else { 0.0 };
         let resolution = 4.0 * f64::EPSILON * self.time.abs();
         for &(edge, node) in &piece.graph.edges {

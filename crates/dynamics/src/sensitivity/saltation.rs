@@ -21,7 +21,7 @@ impl March<'_> {
         if edge == Edge::Reversal
             && at_rest
             && self.mode.direction == old.direction
-            && self.model.field.holding_torque().is_none()
+            && self.model.field.holding_torque(&self.point(), &old).is_none()
         {
             // At rest in balance the torque does not tell the direction of the further motion; the series has
             // told it.

@@ -24,7 +24,7 @@ impl March<'_> {
             && let Some(piece) = self.model.graphs.get(number)
         {
             // Nothing changes but the torque: the step has to resolve it, or a break-away is missed.
-            let holding = self.model.field.holding_torque().unwrap_or(1.0).abs();
+            let holding = self.model.field.holding_torque(&self.point(), &self.mode).unwrap_or(1.0).abs();
             for (_, node) in &piece.graph.edges {
                 tails.take(piece.graph.series(*node), degree, holding);
             }

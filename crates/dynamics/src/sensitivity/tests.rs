@@ -1,7 +1,12 @@
 use super::{Free, FullState, Model, Response, Settings};
 use crate::fixtures::{CASES, EVERYTHING, command, difference, grid, nominal, with};
 use crate::reference::{Tolerance, simulate};
-use crate::{Active, Hold, Input, Nominal, Start, System};
+use crate::{Active, Effect, Hold, Input, Nominal, Start, System};
+
+/// `true` for an effect of the input's path.
+fn is_driven(id: &str) -> bool {
+    Effect::find(id).unwrap().description().driven_only
+}
 
 fn system(effects: &[(&str, &[f64])]) -> System {
     with(nominal(), effects)
@@ -13,7 +18,7 @@ fn trajectories_are_the_references_for_every_effect() {
     let settings = Settings { velocity: true, acceleration: true, ..Settings::default() };
     for case in CASES {
         for hold in [Hold::Zero, Hold::Linear] {
-            let driven = crate::Effect::find(case.0).unwrap().description().driven_only;
+            let driven = is_driven(case.0);
             if !driven && hold == Hold::Linear {
                 continue;
             }
@@ -199,13 +204,15 @@ fn columns_are_the_derivatives_for_every_effect_through_its_events() {
     let times = grid(2.0, 130.0);
     let start = Start { position: 0.6, velocity: 2.0 };
     for case in CASES {
-        let driven = crate::Effect::find(case.0).unwrap().description().driven_only;
+        let driven = is_driven(case.0);
         let linear = || command(2.0, Hold::Linear);
         let inputs = [command(2.0, Hold::Zero), linear(), linear().thinned(5)].map(Some);
         for input in if driven { &inputs[..] } else { &[None] } {
             let system = system(&[*case]);
             let (name, input) = (case.0, input.as_ref());
-            check_columns(&Case { name, system: &system, start, input, times: &times }, 1e-3, 1e-7);
+            // With a held command an edge that is met near a knot is soon met on its other side.
+            let reach = if driven { 3e-5 } else { 1e-3 };
+            check_columns(&Case { name, system: &system, start, input, times: &times }, reach, 1e-7);
         }
     }
 }
@@ -216,7 +223,7 @@ fn columns_are_the_derivatives_with_every_effect_on() {
     let start = Start { position: 0.6, velocity: 2.0 };
     let (system, input) = (system(EVERYTHING), command(0.8, Hold::Linear));
     let (name, input) = ("everything", Some(&input));
-    check_columns(&Case { name, system: &system, start, input, times: &times }, 1e-3, 1e-7);
+    check_columns(&Case { name, system: &system, start, input, times: &times }, 2e-4, 1e-7);
 }
 
 #[test]

@@ -19,14 +19,18 @@ mod constant_torque;
 mod coulomb_friction;
 mod cubic_stiffness;
 mod damping_drift;
+mod directional_friction;
+mod drive_dead_band;
 mod dropouts;
 mod effect_class;
 mod end_stop;
 mod flexible_coupling;
+mod friction_drift;
 mod gravity;
 mod hysteresis;
 mod input_delay;
 mod input_saturation;
+mod load_friction;
 mod other_law;
 mod outliers;
 mod periodic_forcing;
@@ -38,10 +42,12 @@ mod sensor_quantization;
 mod sensor_saturation;
 mod settling_drift;
 mod size;
+mod speed_torque_limit;
 mod stiffness_drift;
 mod stribeck_friction;
 mod timestamp_batching;
 mod timestamp_jitter;
+mod torque_limit;
 mod trial_effect;
 
 use crate::hidden::Bank;
@@ -69,6 +75,12 @@ pub(crate) static REGISTRY: &[TrialEffect] = &[
     input_delay::EFFECT,
     input_saturation::EFFECT,
     command_derivative::EFFECT,
+    torque_limit::EFFECT,
+    load_friction::EFFECT,
+    directional_friction::EFFECT,
+    friction_drift::EFFECT,
+    drive_dead_band::EFFECT,
+    speed_torque_limit::EFFECT,
     sensor_lag::EFFECT,
     sensor_nonlinearity::EFFECT,
     sensor_drift::EFFECT,
@@ -126,7 +138,7 @@ mod tests {
     #[test]
     fn banks_hide_what_can_be_seen_there() {
         let driven = hidden_in(Bank::Driven);
-        assert_eq!(driven.iter().position(|effect| !effect.needs_input), Some(3));
+        assert_eq!(driven.iter().position(|effect| !effect.needs_input), Some(9));
         assert!(
             REGISTRY
                 .iter()

@@ -284,3 +284,8 @@ pub(crate) fn grid(scale: f64, parts: &[f64], shape: impl Fn(f64) -> Vec<f64>) -
 pub(crate) fn secant(shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
     shape.iter().zip(coefficients).map(|(size, coefficient)| size * coefficient.clamp(0.3, 3.0)).collect()
 }
+
+/// Returns `true` if records show a drive whose spring or damping may be software: a servo that follows an input.
+pub(crate) fn has_drive(facts: &Scales, nominal: &Nominal) -> bool {
+    facts.input_torque > 0.0 && (nominal.stiffness() > 0.0 || nominal.damping() > 0.0)
+}

@@ -36,14 +36,18 @@ pub(crate) mod constant_torque;
 pub(crate) mod coulomb_friction;
 pub(crate) mod cubic_stiffness;
 pub(crate) mod damping_drift;
+pub(crate) mod directional_friction;
+pub(crate) mod drive_dead_band;
 pub(crate) mod end_stop;
 mod evidence_class;
 pub(crate) mod flexible_coupling;
+pub(crate) mod friction_drift;
 pub(crate) mod gravity;
 pub(crate) mod hysteresis;
 pub(crate) mod input_delay;
 pub(crate) mod input_saturation;
 mod law;
+pub(crate) mod load_friction;
 mod main_mode;
 mod parameter;
 pub(crate) mod periodic_forcing;
@@ -55,15 +59,17 @@ pub(crate) mod sensor_lag;
 pub(crate) mod sensor_nonlinearity;
 pub(crate) mod sensor_quantization;
 pub(crate) mod sensor_saturation;
+pub(crate) mod speed_torque_limit;
 pub(crate) mod stiffness_drift;
 pub(crate) mod stribeck_friction;
+pub(crate) mod torque_limit;
 mod unlisted_damping;
 mod unlisted_stiffness;
 
 use crate::model::candidate::Candidate;
 pub(crate) use along::{Along, Lines, Mode, driven, padded};
 pub(crate) use evidence_class::EvidenceClass;
-pub(crate) use law::{CandidateLaw, grid, secant};
+pub(crate) use law::{CandidateLaw, grid, has_drive, secant};
 pub(crate) use main_mode::MainMode;
 pub(crate) use parameter::Parameter;
 pub(crate) use polar::Polar;
@@ -96,4 +102,10 @@ pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&sensor_drift::SensorDrift),
     Candidate::new(&clock_drift::ClockDrift),
     Candidate::new(&sensor_quantization::SensorQuantization),
+    Candidate::new(&torque_limit::TorqueLimit),
+    Candidate::new(&load_friction::LoadFriction),
+    Candidate::new(&directional_friction::DirectionalFriction),
+    Candidate::new(&friction_drift::FrictionDrift),
+    Candidate::new(&drive_dead_band::DriveDeadBand),
+    Candidate::new(&speed_torque_limit::SpeedTorqueLimit),
 ];

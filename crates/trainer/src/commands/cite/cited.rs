@@ -6,6 +6,10 @@ pub(super) const CITED: &[(&str, &[&str])] = &[
     ("Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, equation 9", &["armstrong1994"]),
     ("Baker, Blackburn, The Pendulum, Oxford 2005, chapter 3", &["baker2005"]),
     ("Bates, Watts, Technometrics 23 (1981) 179: the stopping rule", &["bates1981"]),
+    (
+        "Bittencourt, Gunnarsson, Journal of Dynamic Systems, Measurement, and Control 134 (2012) 051013",
+        &["bittencourt2012"],
+    ),
     ("Björck, BIT 7 (1967) 1", &["bjorck1967"]),
     ("Björck, Numerical Methods for Least Squares Problems (SIAM 1996), section 2.2", &["bjorck1996"]),
     ("Boninsegna, Nüske, Clementi, Journal of Chemical Physics 148 (2018) 241723", &["boninsegna2018"]),
@@ -36,6 +40,8 @@ pub(super) const CITED: &[(&str, &[&str])] = &[
     ("Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.2 (zero drift)", &["doebelin2004"]),
     ("Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.3", &["doebelin2004"]),
     ("Draper, Smith, Applied Regression Analysis (3rd ed., Wiley 1998), section 1.2", &["draper1998"]),
+    ("Duclusaud, Passault, Padois, Ly, arXiv:2410.08650 (2024), model M3", &["duclusaud2024"]),
+    ("Duclusaud, Passault, Padois, Ly, arXiv:2410.08650 (2024), model M5", &["duclusaud2024"]),
     ("Feeny, Liang, Journal of Sound and Vibration 195 (1996) 149", &["feeny1996"]),
     (
         "Feldman, Hilbert Transform Applications in Mechanical Vibration, Wiley 2011, chapter 9",
@@ -79,6 +85,7 @@ pub(super) const CITED: &[(&str, &[&str])] = &[
     ),
     ("Kovacic, Brennan, The Duffing Equation, Wiley 2011, chapter 2", &["kovacic2011"]),
     ("Koza, Genetic Programming (MIT Press 1992)", &["koza1992"]),
+    ("Krishnan, Electric Motor Drives, Prentice Hall 2001, chapter 3", &["krishnan2001"]),
     ("Levenberg, Quart. Appl. Math. 2 (1944) 164", &["levenberg1944"]),
     ("Liu, Nocedal, Mathematical Programming 45 (1989) 503", &["liu1989"]),
     (
