@@ -170,6 +170,7 @@ fn every_shape_has_columns_and_their_coefficients_are_parameters() {
         observed: &position,
         rate: &velocity,
         input: command.values(),
+        input_rate: command.values(),
         command: Some(&command),
         first: true,
         facts: &FACTS,
