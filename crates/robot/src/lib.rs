@@ -1,0 +1,25 @@
+//! Robots of several joints.
+//!
+//! [`Urdf`] reads a model; [`columns`] finds the columns of a log of several joints; [`project`] turns a
+//! recording into one problem per joint, which the diagnosis of one joint solves; [`repaired`] writes back what was
+//! found.
+//!
+//! Angles are in rad, displacements in m, torques in N m, forces in N. This crate does not read files, print, or
+//! write.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+pub mod columns;
+mod error;
+mod model;
+mod projection;
+mod repair;
+mod smoothing;
+mod urdf;
+
+pub use error::RobotError;
+pub use model::{JointInfo, Model};
+pub use projection::{Channel, Part, Projected, Recording, Tracking, project};
+pub use repair::{JointRepair, repaired};
+pub use smoothing::{Smoothed, smoothed};
+pub use urdf::Urdf;
