@@ -143,6 +143,24 @@ pub fn find(
     each.collect()
 }
 
+/// Finds the columns of a log in long form, which hold all joints one below the other.
+///
+/// # Errors
+/// [`RobotError::NoColumn`] without a position.
+pub fn find_long(log: &str, titles: &[String]) -> Result<JointColumns, RobotError> {
+    let of = |words: &[&str]| {
+        words.iter().find_map(|word| titles.iter().find(|title| plain(title) == **word)).cloned()
+    };
+    let missing = || RobotError::NoColumn {
+        log: log.to_owned(),
+        quantity: "position",
+        joint: "each joint".to_owned(),
+        columns: titles.join(", "),
+        option: "with a title such as position in the header".to_owned(),
+    };
+    Ok(JointColumns { position: of(POSITION).ok_or_else(missing)?, torque: of(TORQUE) })
+}
+
 fn no_joint(log: &str, titles: &[String], joints: &[JointInfo]) -> RobotError {
     let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
     // A model has at least one joint that moves.

@@ -90,7 +90,7 @@ struct Along {
 }
 
 /// Returns a value between samples, linear in between.
-fn interpolated(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
+pub(crate) fn interpolated(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
     let after = times.partition_point(|own| *own < time);
     let last = times.len().checked_sub(1)?;
     let (before, after) = (after.saturating_sub(1).min(last), after.min(last));
@@ -147,7 +147,7 @@ struct Torques {
     position: f64,
 }
 
-fn torques(model: &impl Model, along: &Along, joint: usize, torque: f64) -> Result<Torques, RobotError> {
+fn torques(model: &dyn Model, along: &Along, joint: usize, torque: f64) -> Result<Torques, RobotError> {
     let short = || RobotError::Model {
         quantity: "mass matrix",
         problem: "its size is not that of the joints".into(),
@@ -184,7 +184,7 @@ fn pace(samples: &[Vec<Torques>]) -> Option<f64> {
 /// # Errors
 /// [`RobotError::Short`] for a recording below a second; [`RobotError::NoColumn`] without a torque of the joint;
 /// [`RobotError::Still`] for a joint that does not move; [`RobotError::Model`] from the model.
-pub fn project(model: &impl Model, recordings: &[Recording], joint: usize) -> Result<Projected, RobotError> {
+pub fn project(model: &dyn Model, recordings: &[Recording], joint: usize) -> Result<Projected, RobotError> {
     // Names are for messages; a joint that is asked for is one of the model.
     let name = model.joints().get(joint).map(|own| own.name.clone()).unwrap_or_default();
     let mut samples: Vec<Vec<Torques>> = Vec::new();

@@ -29,6 +29,8 @@ const FASTEST: f64 = 1e5;
 /// What acts in one joint beside the torque of its drive.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Acting {
+    /// Inertia beyond that of the tree, in kg m² or kg; it may be below 0.
+    pub inertia: f64,
     /// Torque of viscous damping per speed, in N m s/rad or N s/m.
     pub damping: f64,
     /// Stiffness of a spring beside the joint, in N m/rad or N/m, which is relaxed at 0.
@@ -51,6 +53,7 @@ pub struct State {
 /// One joint's field of forces and hidden states.
 struct Joint {
     field: Field<f64>,
+    inertia: f64,
     offset: f64,
     hidden: [f64; SYSTEM_HIDDEN],
 }
@@ -74,7 +77,7 @@ impl Joint {
         };
         let field = Field { nominal, terms };
         let hidden = field.relaxed(position, velocity);
-        Self { field, offset: acting.torque, hidden }
+        Self { field, inertia: acting.inertia, offset: acting.torque, hidden }
     }
 
     /// Returns the torque of everything but dry friction, and the bound of the latter, and moves the hidden
@@ -195,7 +198,12 @@ fn advance(
         }
     };
     drift(state);
-    let matrix = tree.mass_matrix(&state.position)?;
+    let mut matrix = tree.mass_matrix(&state.position)?;
+    for (at, (row, joint)) in matrix.iter_mut().zip(joints.iter()).enumerate() {
+        if let Some(own) = row.get_mut(at) {
+            *own += joint.inertia;
+        }
+    }
     let singular = |at: usize| TreeError::NoInertia { joint: tree.names().nth(at).unwrap_or("").to_owned() };
     let accelerate = |bias: Vec<f64>, given: &[f64]| {
         let sum: Vec<f64> = given.iter().zip(bias).map(|(given, bias)| given - bias).collect();
