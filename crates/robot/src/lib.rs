@@ -11,6 +11,7 @@
 
 mod closed_loop;
 pub mod columns;
+mod drive_noise;
 mod error;
 mod model;
 mod projection;

@@ -21,6 +21,7 @@
 //! # Reference
 //! Luenberger, IEEE Transactions on Military Electronics 8 (1964) 74.
 
+use crate::drive_noise::{Drive, Sample, drive_noise};
 use crate::error::RobotError;
 use crate::model::Model;
 use crate::smoothing::{Smoothed, smoothed};
@@ -67,8 +68,10 @@ pub struct Tracking {
 pub struct Part {
     /// Index of the first sample that is used, and the number of used samples.
     pub from: usize,
-    /// Drive of each used sample, in N m or N.
+    /// Drive of each used sample, in N m or N, without the offset.
     pub drive: Vec<f64>,
+    /// Constant torque that acts beside the drive, in N m or N: it was added to it.
+    pub offset: f64,
 }
 
 /// One joint's problem.
@@ -78,6 +81,8 @@ pub struct Projected {
     pub joint: usize,
     /// Spring and damper that are part of the drive and of the simulator.
     pub tracking: Tracking,
+    /// Two-sided spectral density of the drive's noise, in (N m)² s or N² s.
+    pub drive_noise: f64,
     /// One part for each recording.
     pub parts: Vec<Part>,
 }
@@ -138,6 +143,7 @@ impl<'a> Motion<'a> {
 
 /// Torques at one sample of one joint.
 struct Torques {
+    time: f64,
     /// Joint's own entry of the mass matrix.
     inertia: f64,
     /// Known torques without the inertia of the joint itself.
@@ -147,7 +153,12 @@ struct Torques {
     position: f64,
 }
 
-fn torques(model: &dyn Model, along: &Along, joint: usize, torque: f64) -> Result<Torques, RobotError> {
+fn torques(
+    model: &dyn Model,
+    along: &Along,
+    joint: usize,
+    (time, torque): (f64, f64),
+) -> Result<Torques, RobotError> {
     let short = || RobotError::Model {
         quantity: "mass matrix",
         problem: "its size is not that of the joints".into(),
@@ -159,6 +170,7 @@ fn torques(model: &dyn Model, along: &Along, joint: usize, torque: f64) -> Resul
     let others: f64 = others.map(|(_, (entry, rate))| entry * rate).sum();
     let of = |values: &[f64]| values.get(joint).copied().ok_or_else(short);
     Ok(Torques {
+        time,
         inertia: of(row)?,
         known: torque - of(&bias)? - others,
         velocity: of(&along.velocity)?,
@@ -207,7 +219,7 @@ pub fn project(model: &dyn Model, recordings: &[Recording], joint: usize) -> Res
         for at in used.clone() {
             let (Some(time), Some(torque)) = (channel.times.get(at), torque.get(at)) else { continue };
             let Some(along) = motion.along(joint, at, *time) else { continue };
-            own.push(torques(model, &along, joint, *torque)?);
+            own.push(torques(model, &along, joint, (*time, *torque))?);
         }
         samples.push(own);
         from.push(used.start);
@@ -222,7 +234,20 @@ pub fn project(model: &dyn Model, recordings: &[Recording], joint: usize) -> Res
             + tracking.damping * own.velocity
             + tracking.stiffness * own.position
     };
-    let parts = samples.iter().zip(from);
-    let parts = parts.map(|(samples, from)| Part { from, drive: samples.iter().map(drive).collect() });
-    Ok(Projected { joint, tracking, parts: parts.collect() })
+    let sample = |own: &Torques| Sample {
+        time: own.time,
+        position: own.position,
+        velocity: own.velocity,
+        acceleration: own.acceleration,
+        unexplained: own.inertia * own.acceleration - own.known,
+    };
+    let known: Vec<Vec<Sample>> = samples.iter().map(|own| own.iter().map(sample).collect()).collect();
+    let turns = model.joints().get(joint).is_some_and(|own| !own.slides);
+    let Drive { density, offsets } = drive_noise(&tracking, &known, turns);
+    let parts = samples.iter().zip(from).zip(offsets).map(|((samples, from), offset)| Part {
+        from,
+        drive: samples.iter().map(|own| drive(own) + offset).collect(),
+        offset,
+    });
+    Ok(Projected { joint, tracking, drive_noise: density, parts: parts.collect() })
 }

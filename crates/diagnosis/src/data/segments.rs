@@ -357,6 +357,8 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
         tolerance: Scales::UNKNOWN_NOISE,
         noise: 0.0,
+        damping: nominal.damping(),
+        drive_noise: records.iter().map(|record| record.drive_noise).fold(0.0, f64::max),
     }
 }
 

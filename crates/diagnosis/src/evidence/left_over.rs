@@ -147,6 +147,12 @@ fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>
     cut
 }
 
+/// Returns the variance of the noise at an angular frequency over that of its white part: 1 if the drive is exact.
+fn over_white(data: &Data, omega: f64) -> f64 {
+    let white = (data.facts.noise * data.facts.noise).max(f64::MIN_POSITIVE);
+    1.0 + data.facts.moved_by_drive(omega) / data.interval() / white
+}
+
 /// Returns the bands about every half harmonic, from half the swing's frequency up, summed over the
 /// stretches.
 fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
@@ -162,7 +168,8 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
                 continue;
             }
             for beside in -BESIDE..=BESIDE {
-                band.power += periodogram(&times, &values, middle + f64::from(beside) * bin);
+                let omega = middle + f64::from(beside) * bin;
+                band.power += periodogram(&times, &values, omega) / over_white(data, omega);
                 band.bins += 1.0;
             }
             band.worth += WORTH;
@@ -291,6 +298,10 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let whole =
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
     let noise = if around.worth > 0.0 { around } else { whole };
+    if data.facts.drive_noise > 0.0 {
+        // Noise of the drive is red: a smooth torque would always take a part of it.
+        return Ok(spectrum);
+    }
     let projection = Projection::at(data, fit)?;
     let paths = Path::of(data, fit)?;
     let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));

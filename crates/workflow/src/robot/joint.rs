@@ -22,6 +22,8 @@ pub struct JointQuestion {
     pub joint: JointInfo,
     /// Spring and damper that hold its simulator to the measured motion.
     pub tracking: Tracking,
+    /// Mean of the constant torques that were taken out of the drive, in N m or N.
+    pub offset: f64,
     /// Question of the joint as an oscillator.
     pub question: Question,
 }
@@ -66,7 +68,9 @@ impl RobotQuestion {
             given.push(of_part(own, &projected, part, &stated)?);
         }
         let question = Question::new(given, stated, self.name.clone())?;
-        Ok(JointQuestion { joint: info, tracking: projected.tracking, question })
+        let count = projected.parts.len().max(1) as f64;
+        let offset = projected.parts.iter().map(|part| part.offset).sum::<f64>() / count;
+        Ok(JointQuestion { joint: info, tracking: projected.tracking, offset, question })
     }
 }
 
@@ -130,7 +134,9 @@ fn of_part(
     let mut loaded = crate::read::Loaded { record, ..loaded.clone() };
     // Angles of several turns were checked when the recording was read.
     loaded.source.reading.value.unit = None;
-    loaded.given(stated)
+    let mut given = loaded.given(stated)?;
+    given.observations = given.observations.with_drive_noise(projected.drive_noise);
+    Ok(given)
 }
 
 impl JointQuestion {
@@ -147,10 +153,15 @@ impl JointQuestion {
         let mut answer = self.question.answer_watched(settings, seed, goes_on)?;
         let Tracking { inertia, damping, stiffness } = self.tracking;
         let calibration = answer.result.calibration.clone();
-        let repair = beyond(&calibration, &self.tracking, |row| row.repaired);
+        let with_offset = |mut own: JointRepairRow| {
+            own.torque_offset = own.torque_offset.map(|found| less(found, -self.offset));
+            own
+        };
+        let repair = with_offset(beyond(&calibration, &self.tracking, |row| row.repaired));
+        let recalibrated = with_offset(beyond(&calibration, &self.tracking, |row| row.recalibrated));
         let acting = [
             Acting { damping: self.joint.damping, effects: self.known(), ..Acting::default() },
-            acting(&beyond(&calibration, &self.tracking, |row| row.recalibrated), self.recalibrated(&answer)),
+            acting(&recalibrated, self.recalibrated(&answer)),
             acting(&repair, answer.found.repaired.effects.clone()),
         ];
         free(&mut answer, &self.tracking, &repair)?;
