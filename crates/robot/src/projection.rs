@@ -52,6 +52,24 @@ pub struct Recording {
     pub joints: Vec<Channel>,
 }
 
+impl Recording {
+    /// Checks that every joint was recorded for a second.
+    ///
+    /// # Errors
+    /// [`RobotError::Short`].
+    pub fn check_length(&self) -> Result<(), RobotError> {
+        for channel in &self.joints {
+            let ends = channel.times.first().zip(channel.times.last());
+            // A channel without samples lasts 0 s.
+            let seconds = ends.map_or(0.0, |(first, last)| last - first);
+            if seconds < SHORTEST_S {
+                return Err(RobotError::Short { log: self.name.clone(), seconds });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Spring and damper that hold a simulator of one joint to its measured motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tracking {
@@ -113,14 +131,7 @@ pub(crate) struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     pub(crate) fn of(recording: &'a Recording) -> Result<Self, RobotError> {
-        for channel in &recording.joints {
-            let ends = channel.times.first().zip(channel.times.last());
-            // A channel without samples lasts 0 s.
-            let seconds = ends.map_or(0.0, |(first, last)| last - first);
-            if seconds < SHORTEST_S {
-                return Err(RobotError::Short { log: recording.name.clone(), seconds });
-            }
-        }
+        recording.check_length()?;
         let joints = recording.joints.iter().map(|own| smoothed(&own.times, &own.positions)).collect();
         Ok(Self { recording, joints })
     }
@@ -179,14 +190,22 @@ fn torques(
     })
 }
 
+/// Length in seconds of the stretches whose mean positions the pace is measured about: a joint that turns on and on has no
+/// mean position.
+const STRETCH_S: f64 = 2.0;
+
 /// Angular frequency at which the motion of a joint goes on: the root mean square of its speeds over that of its
-/// distances from its mean position. `None` if it does not move.
+/// distances from its mean position along stretches. `None` if it does not move.
 fn pace(samples: &[Vec<Torques>]) -> Option<f64> {
     let (mut speeds, mut distances) = (0.0, 0.0);
     for samples in samples {
-        let mean = samples.iter().map(|own| own.position).sum::<f64>() / samples.len().max(1) as f64;
-        speeds += samples.iter().map(|own| own.velocity.powi(2)).sum::<f64>();
-        distances += samples.iter().map(|own| (own.position - mean).powi(2)).sum::<f64>();
+        for stretch in
+            samples.chunk_by(|one, next| (one.time / STRETCH_S).floor() == (next.time / STRETCH_S).floor())
+        {
+            let mean = stretch.iter().map(|own| own.position).sum::<f64>() / stretch.len() as f64;
+            speeds += stretch.iter().map(|own| own.velocity.powi(2)).sum::<f64>();
+            distances += stretch.iter().map(|own| (own.position - mean).powi(2)).sum::<f64>();
+        }
     }
     (distances > 0.0 && speeds > 0.0).then(|| (speeds / distances).sqrt())
 }

@@ -16,6 +16,28 @@ use results::{CalibratedRow, Calibration, Equation, JointRepairRow, TrackingRow,
 use robot::{JointInfo, Model, Projected, Recording, RobotError, Tracking, project};
 use std::f64::consts::TAU;
 
+/// Effects that are no candidates for a joint: they would change the spring and damper that hold its simulator, or
+/// the whole drive, of which the measured torque is only a part; or bend the sensor's readings, from which the drive is
+/// computed too. A constant torque is part of the calibration. Any line of the drive's noise, which is red, would pass for
+/// a forcing or a second body. The weight of links depends on all joints and is the model's; along one joint's angle, with
+/// a spring, it would only imitate a spring that hardens.
+const NOT_OF_A_JOINT: [&str; 14] = [
+    "backlash",
+    "stiffness_drift",
+    "damping_drift",
+    "input_delay",
+    "input_saturation",
+    "sensor_lag",
+    "sensor_nonlinearity",
+    "sensor_drift",
+    "sensor_saturation",
+    "clock_drift",
+    "constant_torque",
+    "periodic_forcing",
+    "flexible_coupling",
+    "gravity",
+];
+
 /// One joint along the measured motion.
 pub struct JointQuestion {
     /// Joint as the model describes it.
@@ -150,7 +172,9 @@ impl JointQuestion {
         seed: u64,
         goes_on: &(dyn Fn(&'static str) -> bool + Sync),
     ) -> Result<JointAnswer, WorkflowError> {
-        let mut answer = self.question.answer_watched(settings, seed, goes_on)?;
+        let mut settings = settings.clone();
+        settings.without.extend(NOT_OF_A_JOINT.map(str::to_owned));
+        let mut answer = self.question.answer_watched(&settings, seed, goes_on)?;
         let Tracking { inertia, damping, stiffness } = self.tracking;
         let calibration = answer.result.calibration.clone();
         let with_offset = |mut own: JointRepairRow| {

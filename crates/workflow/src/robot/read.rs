@@ -78,6 +78,7 @@ impl RobotQuestion {
         }
         check_distinct(&recordings)?;
         let asked = asked(model.joints(), &options.joints)?;
+        check_usable(&recordings, model.joints(), &asked)?;
         Ok(Self { model, name, recordings, asked })
     }
 }
@@ -97,6 +98,29 @@ fn asked(joints: &[JointInfo], names: &[String]) -> Result<Vec<usize>, WorkflowE
     asked.sort_unstable();
     asked.dedup();
     Ok(asked)
+}
+
+/// Checks that recordings last long enough and hold the torques of the joints to diagnose.
+fn check_usable(
+    recordings: &[LoadedRecording],
+    joints: &[JointInfo],
+    asked: &[usize],
+) -> Result<(), WorkflowError> {
+    for LoadedRecording { recording, joints: loaded, .. } in recordings {
+        recording.check_length()?;
+        let lacks = |index: &&usize| recording.joints.get(**index).is_some_and(|own| own.torques.is_none());
+        if let Some(joint) = asked.iter().find(lacks).and_then(|index| joints.get(*index)) {
+            return Err(WorkflowError::Robot(RobotError::NoColumn {
+                log: recording.name.clone(),
+                quantity: "torque",
+                joint: joint.name.clone(),
+                // A recording has at least one joint.
+                columns: loaded.first().map(|own| own.columns.clone()).unwrap_or_default(),
+                option: format!("{}=POSITION,TORQUE", joint.name),
+            }));
+        }
+    }
+    Ok(())
 }
 
 fn check_distinct(recordings: &[LoadedRecording]) -> Result<(), WorkflowError> {
@@ -134,7 +158,12 @@ fn load(
         own.coordinate =
             Some(if joint.slides { record::Coordinate::Displacement } else { record::Coordinate::Angle });
         let stated_unit = own.columns.unit.is_some();
-        let loaded = Loaded::parse(&name, &bytes, &reading)?;
+        let mut loaded = Loaded::parse(&name, &bytes, &reading)?;
+        if !joint.slides && !stated_unit && !loaded.source.reading.value.is_stated_by_header() {
+            // A guess by the size of the numbers would differ from joint to joint.
+            reading.options.columns.unit = Some(Unit::Radian);
+            loaded = Loaded::parse(&name, &bytes, &reading)?;
+        }
         if !joint.slides && !stated_unit {
             check_turns(&loaded, joint)?;
         }
