@@ -152,7 +152,7 @@ fn what_cannot_be_a_robots_recording_is_refused_with_one_message() {
     let link =
         "<joint name=\"again\" type=\"fixed\"><parent link=\"base\"/><child link=\"lower\"/></joint></robot>";
     refused(&log, &file("loop.urdf", &ARM.replace("</robot>", link)), &[], "hangs on two joints, a loop");
-    refused(&log, &file("arm.xml", "<mujoco/>"), &[], "Robot.from_mjcf");
+    refused(&log, &file("arm.xml", "<mujoco/>"), &[], "this is an MJCF model");
     refused(
         &log,
         &model,

@@ -40,7 +40,7 @@ pub struct JointRow {
     pub diagnosis: DiagnosisResult,
     /// Spring and damper that held the joint's simulator to the measured motion.
     pub tracking: TrackingRow,
-    /// What the repair adds to the joint beside the named effects.
+    /// Coefficients that the repair adds to the joint beside the named effects.
     pub repair: JointRepairRow,
     /// Whole model against recordings, at this joint; absent if it could not be run.
     pub closed_loop: Option<JointErrorRow>,

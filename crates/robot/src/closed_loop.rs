@@ -31,6 +31,25 @@ pub struct ClosedLoop {
     pub runs: usize,
 }
 
+/// Times and torques of one joint.
+type Torques<'a> = (&'a [f64], &'a [f64]);
+
+/// Returns times and torques of every joint.
+fn torques<'a>(recording: &'a Recording, names: &[&str]) -> Result<Vec<Torques<'a>>, RobotError> {
+    let mut torques = Vec::new();
+    for (channel, name) in recording.joints.iter().zip(names) {
+        let own = channel.torques.as_ref().ok_or_else(|| RobotError::NoColumn {
+            log: recording.name.clone(),
+            quantity: "torque",
+            joint: (*name).to_owned(),
+            columns: "positions only".to_owned(),
+            option: format!("{name}=POSITION,TORQUE"),
+        })?;
+        torques.push((channel.times.as_slice(), own.as_slice()));
+    }
+    Ok(torques)
+}
+
 /// Runs a model with what acts in its joints over a recording, in runs of `span` seconds from the measured state, and
 /// compares the positions. Only the part of the recording between two shares of its length is used.
 ///
@@ -45,19 +64,9 @@ pub fn closed_loop(
 ) -> Result<ClosedLoop, RobotError> {
     let motion = Motion::of(recording)?;
     let names: Vec<&str> = tree.names().collect();
-    let mut torques = Vec::new();
-    for (channel, name) in recording.joints.iter().zip(&names) {
-        let own = channel.torques.as_ref().ok_or_else(|| RobotError::NoColumn {
-            log: recording.name.clone(),
-            quantity: "torque",
-            joint: (*name).to_owned(),
-            columns: "positions only".to_owned(),
-            option: format!("{name}=POSITION,TORQUE"),
-        })?;
-        torques.push((channel.times.as_slice(), own.as_slice()));
-    }
+    let torques = torques(recording, &names)?;
     let Some(first) = recording.joints.first() else { return Ok(ClosedLoop { joints: None, runs: 0 }) };
-    let width = motion.joints.iter().map(|own| own.half_width).max().unwrap_or(0);
+    let width = motion.width();
     let count = first.times.len();
     let from = ((part.start * count as f64) as usize).max(width);
     let to = ((part.end * count as f64) as usize).min(count.saturating_sub(width));
@@ -74,6 +83,7 @@ pub fn closed_loop(
             break;
         }
         let along = |time: f64| -> Vec<f64> {
+            // A channel has samples: its length was checked.
             torques.iter().map(|(times, own)| interpolated(times, own, time).unwrap_or(0.0)).collect()
         };
         let start = motion.state(begin);
@@ -104,6 +114,7 @@ impl Motion<'_> {
     /// Returns the smoothed state of all joints at a time.
     fn state(&self, time: f64) -> State {
         let joints = self.joints.iter().zip(&self.recording.joints);
+        // A channel has samples: its length was checked.
         let at = |values: &[f64], times: &[f64]| interpolated(times, values, time).unwrap_or(0.0);
         let (position, velocity) = joints
             .map(|(own, channel)| (at(&own.position, &channel.times), at(&own.velocity, &channel.times)))

@@ -6,9 +6,9 @@
 //! sensor, of the smoothed motion and of what the model idealizes. Its variance is S/(2ck) for noise of the two-sided
 //! spectral density S.
 
-use crate::projection::Tracking;
+use crate::tracking::Tracking;
 
-/// What is known of a joint at one sample.
+/// Motion and unexplained torque of a joint at one sample.
 pub(crate) struct Sample {
     pub(crate) time: f64,
     pub(crate) position: f64,
@@ -147,7 +147,7 @@ pub(crate) fn drive_noise(tracking: &Tracking, recordings: &[Vec<Sample>], turns
 #[cfg(test)]
 mod tests {
     use super::{Sample, drive_noise};
-    use crate::projection::Tracking;
+    use crate::tracking::Tracking;
 
     /// White noise of 0.02 N m at 500 samples a second has the density 0.02²/500. Friction, an armature and an offset
     /// of the sensor do not change what is found.

@@ -17,12 +17,14 @@ mod model;
 mod projection;
 mod repair;
 mod smoothing;
+mod tracking;
 mod urdf;
 
 pub use closed_loop::{ClosedLoop, JointError, closed_loop};
 pub use error::RobotError;
 pub use model::{JointInfo, Model};
-pub use projection::{Channel, Part, Projected, Recording, Tracking, project};
+pub use projection::{Channel, Part, Projected, Recording, project};
 pub use repair::{JointRepair, repaired};
 pub use smoothing::{Smoothed, smoothed};
+pub use tracking::Tracking;
 pub use urdf::Urdf;

@@ -25,6 +25,7 @@ use crate::drive_noise::{Drive, Sample, drive_noise};
 use crate::error::RobotError;
 use crate::model::Model;
 use crate::smoothing::{Smoothed, smoothed};
+use crate::tracking::Tracking;
 
 /// Damping ratio of the spring and damper that hold a simulator to the measured motion.
 const DAMPING_RATIO: f64 = 0.7;
@@ -68,17 +69,6 @@ impl Recording {
         }
         Ok(())
     }
-}
-
-/// Spring and damper that hold a simulator of one joint to its measured motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tracking {
-    /// Mean of the joint's own entry of the mass matrix, in kg m² or kg.
-    pub inertia: f64,
-    /// Damping in N m s/rad or N s/m.
-    pub damping: f64,
-    /// Stiffness in N m/rad or N/m.
-    pub stiffness: f64,
 }
 
 /// Recording of one joint as the diagnosis of an oscillator reads it.
@@ -134,6 +124,12 @@ impl<'a> Motion<'a> {
         recording.check_length()?;
         let joints = recording.joints.iter().map(|own| smoothed(&own.times, &own.positions)).collect();
         Ok(Self { recording, joints })
+    }
+
+    /// Returns the largest number of samples on each side that a smoothed one depends on.
+    pub(crate) fn width(&self) -> usize {
+        // Without joints there is nothing to smooth.
+        self.joints.iter().map(|own| own.half_width).max().unwrap_or(0)
     }
 
     /// Returns the motion of all joints at a time; `at` is the index of this time among the samples of `joint`.
@@ -232,7 +228,7 @@ pub fn project(model: &dyn Model, recordings: &[Recording], joint: usize) -> Res
         let channel = recording.joints.get(joint).ok_or_else(missing)?;
         let torque = channel.torques.as_ref().ok_or_else(missing)?;
         // Near the ends, cubics are one-sided and hardly know the acceleration.
-        let width = motion.joints.iter().map(|own| own.half_width).max().unwrap_or(0);
+        let width = motion.width();
         let used = width..channel.times.len().saturating_sub(width);
         let mut own = Vec::with_capacity(used.len());
         for at in used.clone() {

@@ -10,7 +10,7 @@ pub struct JointRepair {
     pub damping: Option<f64>,
     /// Dry friction in N m or N; `None` keeps that of the file.
     pub friction: Option<f64>,
-    /// What URDF cannot hold, one sentence each.
+    /// Sentences on what URDF cannot hold.
     pub remarks: Vec<String>,
 }
 

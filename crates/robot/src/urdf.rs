@@ -153,10 +153,7 @@ impl Urdf {
         if !root.has_tag_name("robot") {
             let found = root.tag_name().name();
             let problem = match found {
-                "mujoco" => {
-                    "this is an MJCF model; load it from Python with Robot.from_mjcf, or convert it to URDF"
-                        .into()
-                }
+                "mujoco" => "this is an MJCF model, which is not read; convert it to URDF".into(),
                 _ => format!("the outermost element is <{found}>; expected <robot>"),
             };
             return Err(reader.refused(&root, problem));

@@ -1,10 +1,12 @@
 //! Recursive Newton–Euler and composite-rigid-body algorithms, in the frames of the bodies.
 
+use super::body::{Body, Inertia, JointMotion};
+use super::error::TreeError;
+use super::structure::Tree;
 use super::vector::{
     Rows, Vector, add, constant, constants, cross, dot, of_point, product, rotation, scaled, sum, times,
     transposed, zero,
 };
-use super::{Body, Inertia, JointMotion, Tree, TreeError};
 use crate::scalar::Scalar;
 
 /// Frame of a body in that of its parent, at the present position of its joint.

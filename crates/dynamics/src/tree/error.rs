@@ -1,6 +1,6 @@
 //! Errors of a tree, and its checks.
 
-use super::{Body, Inertia, JointMotion, Placement};
+use super::body::{Body, Inertia, JointMotion, Placement};
 use thiserror::Error;
 
 /// Reason why bodies form no tree, or why values do not fit it.

@@ -9,7 +9,8 @@
 //! 399.
 
 use super::algorithms::solved;
-use super::{Tree, TreeError};
+use super::error::TreeError;
+use super::structure::Tree;
 use crate::active::Active;
 use crate::field::{Field, SYSTEM_HIDDEN, State as JointState, Term};
 use crate::nominal::Coefficients;
@@ -26,7 +27,7 @@ const SETTLED: f64 = 1e-10;
 /// Speed in rad/s or m/s beyond which a motion counts as diverging.
 const FASTEST: f64 = 1e5;
 
-/// What acts in one joint beside the torque of its drive.
+/// Torques that act in one joint beside the torque of its drive.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Acting {
     /// Inertia beyond that of the tree, in kg m² or kg; it may be below 0.
@@ -213,6 +214,7 @@ fn advance(
     for (at, (joint, torque)) in joints.iter_mut().zip(torque).enumerate() {
         // The lengths were checked.
         let [position, velocity] =
+            // The lengths were checked.
             [&state.position, &state.velocity].map(|own| own.get(at).copied().unwrap_or(0.0));
         let (own, bound) = joint.torque(time, [position, velocity, *torque], step);
         given.push(torque + own);

@@ -136,6 +136,7 @@ impl RobotQuestion {
     fn floors(&self, answers: &[JointAnswer]) -> Vec<f64> {
         let of = |joint: &robot::JointInfo| {
             let answer = answers.iter().find(|own| own.joint.name == joint.name);
+            // Its errors are then compared with nothing.
             answer.map_or(0.0, |own| own.answer.result.gap.noise_floor)
         };
         self.model.joints().iter().map(of).collect()

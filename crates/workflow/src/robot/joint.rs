@@ -60,7 +60,7 @@ pub struct JointAnswer {
     pub tracking: TrackingRow,
     /// Coefficients beside those of the effects.
     pub repair: JointRepairRow,
-    /// What acts in the joint beside its drive: as given, recalibrated, and repaired.
+    /// Torques in the joint beside its drive: as given, recalibrated, and repaired.
     pub acting: [Acting; 3],
 }
 
@@ -250,6 +250,7 @@ fn beyond(
 
 /// Returns what acts in a joint by its fitted coefficients; one that is not determined is 0.
 fn acting(repair: &JointRepairRow, effects: Vec<Active>) -> Acting {
+    // The model keeps its own value.
     let value = |own: Option<WithInterval>| own.map_or(0.0, |own| own.value);
     Acting {
         inertia: value(repair.armature),
