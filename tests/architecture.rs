@@ -10,7 +10,7 @@ use std::process::Command;
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
         "record" | "seed" | "settings" | "dynamics" => 0,
-        "envelope" | "export" | "results" | "truth" => 1,
+        "envelope" | "export" | "results" | "robot" | "truth" => 1,
         "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
         name if name.starts_with("estimator-") => 4,

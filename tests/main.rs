@@ -41,6 +41,7 @@ mod reading;
 mod recipe;
 mod resuming;
 mod rigs;
+mod robots;
 mod run_folders;
 mod rust_interface;
 mod schema;

@@ -62,6 +62,7 @@ mod system;
 #[cfg(test)]
 mod tests;
 mod times;
+pub mod tree;
 mod units;
 pub mod weak_form;
 

@@ -49,7 +49,7 @@ pub use columns::{CsvColumns, Filter, Missing};
 pub use error::{Fault, RecordError};
 pub use file::{Source, file_digest, read_file, read_text};
 pub use lattice::Lattice;
-pub use look::{ColumnLook, Look, look};
+pub use look::{ColumnLook, Look, Titles, look, titles};
 pub use options::{Format, ReadOptions};
 pub use reading::{ColumnReading, Coordinate, Reading, Whole};
 pub use record::{InputRow, Quantity, Record};

@@ -79,3 +79,31 @@ fn columns(text: &str, source: &Source) -> Vec<ColumnLook> {
     };
     columns.into_iter().map(look).collect()
 }
+
+/// Titles of a table, and the series that it holds in long form.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Titles {
+    /// Titles of all columns, as written.
+    pub titles: Vec<String>,
+    /// Title of the column `joint` and its values, in the order of their first lines; `None` without one.
+    pub joints: Option<(String, Vec<String>)>,
+}
+
+/// Reads the titles of the table in the bytes of a file; `name` is its name in messages.
+///
+/// # Errors
+/// [`RecordError`] for bytes that hold no table.
+pub fn titles(name: &str, bytes: &[u8]) -> Result<Titles, RecordError> {
+    let read = || {
+        let (text, _) = table_text(bytes)?;
+        let table = Table::new(text.trim_start_matches('\u{feff}'))?;
+        let titles: Vec<String> = table.columns.iter().map(|own| own.heading.title.clone()).collect();
+        let joint = titles.iter().position(|title| title.trim().eq_ignore_ascii_case("joint"));
+        let joints = joint.map(|at| {
+            let values = table.values(at).into_iter().map(str::to_owned).collect();
+            (table.title(at).to_owned(), values)
+        });
+        Ok(Titles { titles, joints })
+    };
+    read().map_err(|fault: crate::error::Fault| fault.in_file(name))
+}

@@ -78,7 +78,7 @@ impl<'a> Table<'a> {
 
     /// Returns the values of a column in the order of their first lines, or no values if there are too many
     /// to distinguish series.
-    fn values(&self, at: usize) -> Vec<&'a str> {
+    pub(crate) fn values(&self, at: usize) -> Vec<&'a str> {
         let (mut known, mut found) = (BTreeSet::new(), Vec::new());
         for (_, row) in &self.layout.rows {
             // A row that ends before the column has an empty cell there.

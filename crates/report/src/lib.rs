@@ -24,6 +24,7 @@ mod fleet;
 pub mod format;
 mod frame;
 pub mod glossary;
+mod joints;
 mod latex;
 mod learning;
 mod modes;
@@ -76,6 +77,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
         parse::Task::Learn => learning::render(texts, &parse::parse_learning(texts)?),
         parse::Task::Predict => render_prediction(texts),
         parse::Task::Diagnose => render_diagnosis(texts),
+        parse::Task::Joints => joints::render(texts, &parse::joints_result(texts.result)?),
         parse::Task::Rigs => rigs::render(texts, &parse::rigs_result(texts.result)?),
         parse::Task::Fleet => fleet::render(texts, &parse::fleet_result(texts.result)?),
         parse::Task::Trials => render_trials(texts),

@@ -2,9 +2,9 @@
 
 use results::{
     ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, FLEET_SCHEMA,
-    FleetResult, LearnResult, LearnSeriesRow, LearnTorqueRow, LearnTraceRow, PredictionCsvRow,
-    PredictionResult, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow,
-    TrialsResult,
+    FleetResult, JOINTS_SCHEMA, JointsResult, LearnResult, LearnSeriesRow, LearnTorqueRow, LearnTraceRow,
+    PredictionCsvRow, PredictionResult, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunTable, SeriesRow,
+    TRIALS_SCHEMA, TraceRow, TrialsResult,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -53,6 +53,8 @@ pub(crate) enum Task {
     Learn,
     Predict,
     Diagnose,
+    /// A diagnosis of a robot's joints.
+    Joints,
     /// A joint diagnosis of several rigs of one build.
     Rigs,
     /// A fleet: the diagnoses of a batch.
@@ -71,6 +73,7 @@ impl Task {
             Self::Learn => "learn",
             Self::Predict => "predict",
             Self::Diagnose => "diagnose",
+            Self::Joints => "joints",
             Self::Rigs => "rigs",
             Self::Fleet => "fleet",
             Self::Trials => "trials",
@@ -139,6 +142,10 @@ pub(crate) fn run_table(text: &str) -> Result<RunTable, ReportError> {
     result(text, Task::Table)
 }
 
+pub(crate) fn joints_result(text: &str) -> Result<JointsResult, ReportError> {
+    result(text, Task::Joints)
+}
+
 pub(crate) fn rigs_result(text: &str) -> Result<RigsResult, ReportError> {
     result(text, Task::Rigs)
 }
@@ -177,6 +184,9 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
     if tag.schema == DIAGNOSIS_SCHEMA {
         return Ok(Task::Diagnose);
+    }
+    if tag.schema == JOINTS_SCHEMA {
+        return Ok(Task::Joints);
     }
     if tag.schema == RIGS_SCHEMA {
         return Ok(Task::Rigs);

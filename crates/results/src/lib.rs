@@ -15,6 +15,7 @@ mod estimation;
 mod failure;
 mod fleet;
 mod interval;
+mod joints;
 mod launch;
 mod learning;
 mod method;
@@ -49,6 +50,10 @@ pub use estimation::{
 pub use failure::Failure;
 pub use fleet::{FLEET_SCHEMA, FleetCase, FleetClass, FleetGroup, FleetNumber, FleetOutlier, FleetResult};
 pub use interval::WithInterval;
+pub use joints::{
+    ClosedLoopRecording, ClosedLoopRow, IdentifiableRow, JOINTS_SCHEMA, JointErrorRow, JointRepairRow,
+    JointRow, JointsResult, RecordingRow, TrackingRow,
+};
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,

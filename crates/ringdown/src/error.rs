@@ -88,7 +88,7 @@ impl From<WorkflowError> for Error {
     fn from(error: WorkflowError) -> Self {
         use WorkflowError as E;
         match error {
-            E::Settings(_) | E::Nominal { .. } | E::NominalIsConfiguration { .. } => {
+            E::Settings(_) | E::Nominal { .. } | E::NominalIsConfiguration { .. } | E::Robot(_) => {
                 Self::Config(error.to_string())
             }
             E::Diagnosis { .. } => Self::Diagnosis(error),

@@ -7,9 +7,9 @@ use crate::lock::LOCK;
 use crate::sweep::SweepFolder;
 use jiff::Timestamp;
 use results::{
-    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, LearnEnd, LearnKind, LearnResult, LearnRow,
-    LearnedScores, MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA, Reached, RigsResult, RunState,
-    RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
+    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, JOINTS_SCHEMA, JointRow, JointsResult, LearnEnd,
+    LearnKind, LearnResult, LearnRow, LearnedScores, MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA,
+    Reached, RigsResult, RunState, RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -18,8 +18,15 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Names of a run's files; every run has at least one of them.
-const FILES: [&str; 6] =
-    ["config.toml", "events.jsonl", "result.json", "diagnosis.json", "rigs.json", "environment.json"];
+const FILES: [&str; 7] = [
+    "config.toml",
+    "events.jsonl",
+    "result.json",
+    "diagnosis.json",
+    "joints.json",
+    "rigs.json",
+    "environment.json",
+];
 
 /// Run folder in the state in which it was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,7 +170,7 @@ fn fill(run: &mut KeptRun, last: Option<Event>) -> Result<(), String> {
     }
     let mut file = "result.json";
     let mut result = None;
-    for name in ["rigs.json", "diagnosis.json", "result.json"] {
+    for name in ["joints.json", "rigs.json", "diagnosis.json", "result.json"] {
         if result.is_none() {
             (file, result) = (name, text(&run.path, name)?);
         }
@@ -203,6 +210,15 @@ fn content(text: &str) -> Result<Content, String> {
             let effects =
                 if effects.is_empty() { String::new() } else { format!(": {}", effects.join(", ")) };
             Ok(Content::in_words("diagnose", format!("{status}{effects}")))
+        }
+        (JOINTS_SCHEMA, _) => {
+            let found: JointsResult = parse(text)?;
+            let joint = |own: &JointRow| {
+                let effects = own.diagnosis.verdict.effects.join(", ");
+                format!("{}: {}", own.name, if effects.is_empty() { "nothing" } else { &effects })
+            };
+            let joints: Vec<String> = found.joints.iter().map(joint).collect();
+            Ok(Content::in_words("joints", joints.join("; ")))
         }
         (RIGS_SCHEMA, _) => {
             let found: RigsResult = parse(text)?;

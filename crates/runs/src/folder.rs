@@ -344,8 +344,9 @@ impl RunFolder {
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let has = |name: &str| self.path.join(name).exists();
-        let (config, result) = if has("rigs.json") {
-            (String::new(), read("rigs.json")?)
+        let of_several = ["joints.json", "rigs.json"].into_iter().find(|name| has(name));
+        let (config, result) = if let Some(name) = of_several {
+            (String::new(), read(name)?)
         } else if has("diagnosis.json") {
             (table("repaired.toml")?, read("diagnosis.json")?)
         } else if has("table.csv") {

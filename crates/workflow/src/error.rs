@@ -3,6 +3,7 @@
 use diagnosis::DiagnosisError;
 use identify::IdentifyError;
 use record::RecordError;
+use robot::RobotError;
 use settings::SettingsError;
 use thiserror::Error;
 
@@ -120,6 +121,9 @@ pub enum WorkflowError {
         /// Digest of both.
         digest: String,
     },
+    /// A robot's model or log cannot be used.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
     /// The record shows no oscillator.
     #[error("{file}: {source}")]
     Identify {

@@ -28,6 +28,7 @@ mod question;
 pub mod read;
 mod repair;
 mod result;
+pub mod robot;
 
 pub use error::{WorkflowError, in_options};
 pub use logs::{is_log, is_run, left_out, logs};

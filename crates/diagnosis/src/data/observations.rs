@@ -23,6 +23,8 @@ pub struct Observations {
     pub(crate) stamps: StampStatistics,
     /// Step of the sensor, if the values lie on a lattice.
     pub(crate) resolution: Option<f64>,
+    /// Spectral density of the noise of the drive, two-sided, in (N m)² s or N² s; 0 if the drive is exact.
+    pub(crate) drive_noise: f64,
     /// Indices of the samples that come after a gap in the rows.
     pub(crate) after_gaps: Vec<usize>,
 }
@@ -78,8 +80,17 @@ impl Observations {
             },
             stamps: clock.statistics.clone(),
             resolution: record.lattice().map(|lattice| lattice.step),
+            drive_noise: 0.0,
             after_gaps: after_gaps(record),
         }
+    }
+
+    /// Sets the spectral density of white noise in the drive, two-sided, in (N m)² s or N² s: what a measured torque
+    /// and a motion computed from measurements are off. It moves the system, so that fits leave it as a colored
+    /// residual. A value that is not positive and finite counts as 0.
+    #[must_use]
+    pub fn with_drive_noise(self, density: f64) -> Self {
+        Self { drive_noise: if density.is_finite() { density.max(0.0) } else { 0.0 }, ..self }
     }
 
     /// Number of samples.

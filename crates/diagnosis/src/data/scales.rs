@@ -49,6 +49,9 @@ pub(crate) struct Scales {
     pub(crate) tolerance: f64,
     /// Standard deviation of the noise in the sensor's own unit; 0 while it is not known.
     pub(crate) noise: f64,
+    /// Nominal damping, and the spectral density of the drive's noise (two-sided).
+    pub(crate) damping: f64,
+    pub(crate) drive_noise: f64,
 }
 
 /// Repetition of a driven motion.
@@ -108,6 +111,21 @@ impl Scales {
     pub(crate) fn with_noise(self, noise: f64, span: f64) -> Self {
         let resolution = if self.resolution < noise { 0.0 } else { self.resolution };
         Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), resolution, noise, ..self }
+    }
+
+    /// Returns the spectral density, two-sided, by which the drive's noise moves the system at an angular frequency.
+    pub(crate) fn moved_by_drive(&self, omega: f64) -> f64 {
+        let spring = self.stiffness - self.inertia * omega * omega;
+        let divisor = spring * spring + (self.damping * omega).powi(2);
+        if self.drive_noise > 0.0 && divisor > 0.0 { self.drive_noise / divisor } else { 0.0 }
+    }
+
+    /// Returns the standard deviation of readings with white noise of the given size and the drive's noise: white
+    /// torque of density S moves an oscillator by a variance of S/(2ck).
+    pub(crate) fn with_drive(&self, noise: f64) -> f64 {
+        let divisor = 2.0 * self.damping * self.stiffness;
+        let moved = if self.drive_noise > 0.0 && divisor > 0.0 { self.drive_noise / divisor } else { 0.0 };
+        (noise * noise + moved).sqrt()
     }
 
     /// Tolerance while the noise is not yet known.

@@ -300,6 +300,11 @@ fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
     moving.map_or(0.0, |(time, _)| *time)
 }
 
+/// Returns the largest of a number of every record, at least 0.
+fn most(records: &[Observations], of: impl Fn(&Observations) -> f64) -> f64 {
+    records.iter().map(of).fold(0.0, f64::max)
+}
+
 fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Option<f64>) -> Scales {
     let (nominal, omega) = (simulator.nominal(), simulator.angular_frequency());
     let frequency = match period_s {
@@ -354,7 +359,7 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         input_torque,
         drive_torque,
         drive_error: if nominal.stiffness() > 0.0 { drive_torque / nominal.stiffness() } else { 0.0 },
-        duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
+        duration: most(records, Observations::duration_s),
         interval,
         rest_moved: rest - nominal.rest_angle(),
         friction_known: knows_friction(simulator),
@@ -362,9 +367,11 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
         repeats: records.iter().find(|record| record.input.is_some()).and_then(repeats),
-        rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
+        rate_error: most(records, |record| record.rate_error),
         tolerance: Scales::UNKNOWN_NOISE,
         noise: 0.0,
+        damping: nominal.damping(),
+        drive_noise: most(records, |record| record.drive_noise),
     }
 }
 

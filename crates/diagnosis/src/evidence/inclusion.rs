@@ -57,7 +57,7 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
 /// Returns the probability that something is left beside a set. It is 1 if the set's error, or its held-out
 /// error `held_out`, exceeds the white noise, whatever its spectrum.
 fn left_over(data: &Data, set: &Fit, held_out: f64) -> Result<f64, DynamicsError> {
-    let noise = floor::floor(data, &set.residuals).interval_95[1];
+    let noise = data.facts.with_drive(floor::floor(data, &set.residuals).interval_95[1]);
     let is_white = (set.squares / set.freedom()).sqrt() <= WHITE * noise && held_out <= PREDICTED * noise;
     Ok(if is_white { acts(unexplained(data, set)?.evidence) } else { 1.0 })
 }

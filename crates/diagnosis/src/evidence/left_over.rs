@@ -147,6 +147,17 @@ fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>
     cut
 }
 
+/// Returns the variance of the white noise if that of the drive is known beside it, and 0 otherwise.
+fn known_noise(data: &Data) -> f64 {
+    if data.facts.drive_noise > 0.0 { data.facts.noise * data.facts.noise } else { 0.0 }
+}
+
+/// Returns the variance of the noise at an angular frequency over that of its white part: 1 if the drive is exact.
+fn over_white(data: &Data, omega: f64) -> f64 {
+    let white = (data.facts.noise * data.facts.noise).max(f64::MIN_POSITIVE);
+    1.0 + data.facts.moved_by_drive(omega) / data.interval() / white
+}
+
 /// Returns the bands about every half harmonic, from half the swing's frequency up, summed over the
 /// stretches.
 fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
@@ -162,7 +173,8 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
                 continue;
             }
             for beside in -BESIDE..=BESIDE {
-                band.power += periodogram(&times, &values, middle + f64::from(beside) * bin);
+                let omega = middle + f64::from(beside) * bin;
+                band.power += periodogram(&times, &values, omega) / over_white(data, omega);
                 band.bins += 1.0;
             }
             band.worth += WORTH;
@@ -172,8 +184,9 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
 }
 
 /// Returns the excess of the spectrum, and the noise about the swing's own frequency: its variance and the
-/// number of squares that it is estimated from.
-fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
+/// number of squares that it is estimated from. No neighbor counts as quieter than `least`, the variance of known
+/// noise.
+fn outstanding(bands: &[Band], least: f64) -> (Unexplained, Band) {
     // A missing band has no power.
     let at = |index: Option<usize>| index.and_then(|i| bands.get(i)).copied().unwrap_or_default();
     let mut evidence: f64 = 0.0;
@@ -185,10 +198,10 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     // slow torque.
     for (index, band) in bands.iter().enumerate().skip(1) {
         let beside = lower(index).with(upper(index));
-        let own = larger(band.mean(), band.worth, beside.mean(), beside.worth);
+        let own = larger(band.mean(), band.worth, beside.mean().max(least), beside.worth);
         evidence = evidence.max(own);
         if own > 0.0 {
-            squares += 2.0 * (band.power - band.bins * beside.mean());
+            squares += 2.0 * (band.power - band.bins * beside.mean().max(least));
         }
     }
     let evidence = (evidence - LOOKS.ln()).max(0.0);
@@ -286,11 +299,15 @@ fn taken(
 /// Any [`DynamicsError`] of the simulation.
 pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, DynamicsError> {
     let residuals = without_rounding(data, &fit.residuals);
-    let (spectrum, around) = outstanding(&bands(data, &residuals));
+    let (spectrum, around) = outstanding(&bands(data, &residuals), known_noise(data));
     // If the spectrum has no bands beside the swing's, the whole residual counts as noise.
     let whole =
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
     let noise = if around.worth > 0.0 { around } else { whole };
+    if data.facts.drive_noise > 0.0 {
+        // Noise of the drive is red: a smooth torque would always take a part of it.
+        return Ok(spectrum);
+    }
     let projection = Projection::at(data, fit)?;
     let paths = Path::of(data, fit)?;
     let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));
@@ -342,10 +359,10 @@ mod tests {
         let band = |power: f64| Band { power: 1500.0 * power, bins: 1500.0, worth: 1867.0 };
         let mut spectrum = vec![band(1.0); 2 * HARMONICS];
         spectrum[SWING] = band(0.65);
-        assert_eq!(outstanding(&spectrum).0.evidence, 0.0);
+        assert_eq!(outstanding(&spectrum, 0.0).0.evidence, 0.0);
         // An excess at the swing's own frequency is still detected there.
         spectrum[SWING] = band(1.3);
-        assert!(outstanding(&spectrum).0.evidence > 5.0);
+        assert!(outstanding(&spectrum, 0.0).0.evidence > 5.0);
     }
 
     #[test]

@@ -9,6 +9,8 @@ use record::Quantity;
 
 const FACTS: Scales = Scales {
     noise: 0.0,
+    damping: 0.0,
+    drive_noise: 0.0,
     amplitude: 0.7,
     highest: 0.7,
     lowest: -0.7,

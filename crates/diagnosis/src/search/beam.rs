@@ -198,7 +198,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
 
 /// Returns `true` if a set leaves so much more than noise that something must be missing from it.
 fn leaves_more(data: &Data, set: &Fit) -> bool {
-    (set.squares / set.freedom()).sqrt() > LEFT * data.facts.noise
+    (set.squares / set.freedom()).sqrt() > LEFT * data.facts.with_drive(data.facts.noise)
 }
 
 /// Returns the sets to expand next: the best one of each size. If all of these are expanded already, the next

@@ -3,7 +3,7 @@
 //! This is Whittle's likelihood by segments and by bands about the swing's half harmonics: the power P that a set
 //! leaves in a band of w independent squares adds −w/2·(ln S + P/S) to the log likelihood, where S is the
 //! variance there: the sensor's variance σ² plus that of a discrepancy of unknown size. S is σ² if P is below
-//! σ², and P otherwise.
+//! σ², and P otherwise. Where the drive has noise, σ² includes what this moves.
 //!
 //! So a law has its full weight wherever only the sensor's noise is left. Where something is left that no law
 //! explains, only the ratio of the powers that two sets leave counts: a set that is far off in one segment, where
@@ -17,6 +17,7 @@
 //! 425 (the discrepancy). Miller, Dunson, Journal of the American Statistical Association 114 (2019) 1113
 //! (why a likelihood that takes a left-over for noise is too certain).
 
+use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::noise::periodogram::below_images;
 use nalgebra::{DMatrix, DVector};
@@ -34,6 +35,8 @@ struct Bins {
     bands: Vec<usize>,
     /// Number of bins by band.
     counts: [f64; BANDS],
+    /// Variance by band of what the drive's noise moves.
+    driven: [f64; BANDS],
 }
 
 /// Likelihood of residuals on the same samples.
@@ -49,7 +52,8 @@ pub(crate) struct Likelihood {
 impl Bins {
     /// Creates the bins of a cosine transform: every sample has the same weight, those at the ends of a segment
     /// too. A line at one frequency falls off by the fourth power beside it.
-    fn new(times: &[f64], frequency: f64, interval: f64) -> Self {
+    fn new(times: &[f64], facts: &Scales, interval: f64) -> Self {
+        let frequency = facts.frequency;
         // A stretch without samples has no bins.
         let first = times.first().copied().unwrap_or_default();
         let after: Vec<f64> = times.iter().map(|time| time - first).collect();
@@ -64,12 +68,18 @@ impl Bins {
         let most = ((highest * length / turn) as usize).min(count.saturating_sub(1));
         let mut waves = Vec::with_capacity((most + 1) * count);
         let mut bands = Vec::with_capacity(most + 1);
+        let mut driven = [0.0; BANDS];
         for bin in 0..=most {
             let omega = turn * bin as f64 / length;
             // The constant has no sine beside its cosine, and all of the power.
             let size = if bin == 0 { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
             waves.extend(after.iter().map(|t| size * weight * (omega * (t + begin)).cos()));
-            bands.push(((2.0 * omega / frequency).round() as usize).min(BANDS - 1));
+            let band = ((2.0 * omega / frequency).round() as usize).min(BANDS - 1);
+            bands.push(band);
+            if let Some(slot) = driven.get_mut(band) {
+                // White noise of variance 1 has the density of one interval.
+                *slot += facts.moved_by_drive(omega) / interval;
+            }
         }
         let mut counts = [0.0; BANDS];
         for &band in &bands {
@@ -77,7 +87,10 @@ impl Bins {
                 *slot += 1.0;
             }
         }
-        Self { waves: DMatrix::from_row_slice(bands.len(), count, &waves), bands, counts }
+        for (driven, count) in driven.iter_mut().zip(counts).filter(|(_, count)| *count > 0.0) {
+            *driven /= count;
+        }
+        Self { waves: DMatrix::from_row_slice(bands.len(), count, &waves), bands, counts, driven }
     }
 
     /// Returns the sum of squares by band.
@@ -104,19 +117,22 @@ impl Likelihood {
             for part in segment.part_ranges() {
                 // Ranges of parts lie within their segment.
                 let times = segment.times.get(part).unwrap_or_default();
-                bins.push(Bins::new(times, data.facts.frequency, interval));
+                bins.push(Bins::new(times, &data.facts, interval));
             }
         }
         let mut own = Self { bins, worth: Vec::new(), noise: noise * noise };
         let powers = own.powers(closest);
-        let share = |mean: f64| {
-            let of_noise = own.noise / mean.max(own.noise).max(f64::MIN_POSITIVE);
+        let share = |mean: f64, driven: f64| {
+            let noise = own.noise + driven;
+            let of_noise = noise / mean.max(noise).max(f64::MIN_POSITIVE);
             of_noise + (1.0 - of_noise) / powers.len().max(1) as f64
         };
         let worth = |(bins, powers): (&Bins, &[f64; BANDS])| {
             let mut worth = bins.counts;
-            for (worth, power) in worth.iter_mut().zip(powers).filter(|(worth, _)| **worth > 0.0) {
-                *worth *= share(power / *worth);
+            for ((worth, power), driven) in worth.iter_mut().zip(powers).zip(bins.driven) {
+                if *worth > 0.0 {
+                    *worth *= share(power / *worth, driven);
+                }
             }
             worth
         };
@@ -137,17 +153,17 @@ impl Likelihood {
 
     /// Returns the log likelihood of the `drawn` segments, from the [`Self::powers`] of all.
     pub(crate) fn log_of(&self, by_segment: &[[f64; BANDS]], drawn: &[usize]) -> f64 {
-        let of = |((power, count), worth): ((&f64, &f64), &f64)| {
+        let of = |(((power, count), worth), driven): (((&f64, &f64), &f64), &f64)| {
             if *count == 0.0 {
                 return 0.0;
             }
             let mean = power / count;
-            let variance = mean.max(self.noise).max(f64::MIN_POSITIVE);
+            let variance = mean.max(self.noise + driven).max(f64::MIN_POSITIVE);
             -0.5 * worth * (variance.ln() + mean / variance)
         };
         let segment = |&at: &usize| {
             let (powers, bins, worth) = (by_segment.get(at)?, self.bins.get(at)?, self.worth.get(at)?);
-            Some(powers.iter().zip(&bins.counts).zip(worth).map(of).sum::<f64>())
+            Some(powers.iter().zip(&bins.counts).zip(worth).zip(&bins.driven).map(of).sum::<f64>())
         };
         drawn.iter().filter_map(segment).sum()
     }

@@ -70,7 +70,7 @@ impl Remaining {
             evidence = evidence.max(torque.evidence);
         }
         let with_names = held.after.mean_square();
-        if with_names > (FAR_ABOVE * noise.value).powi(2) {
+        if with_names > (FAR_ABOVE * data.facts.with_drive(noise.value)).powi(2) {
             // No noise is that smooth: whatever its spectrum, the residual is a part of the gap.
             share = share.max((with_names - noise_square) / excess.max(f64::MIN_POSITIVE));
             evidence = f64::INFINITY;

@@ -117,7 +117,9 @@ impl CandidateLaw for FlexibleCoupling {
         let harmonic = order * swing.decay_rate;
         let differs = rate > ANOTHER_DECAY * harmonic || rate * ANOTHER_DECAY < harmonic;
         let decays_apart = swing.starts_once && order > 1.0 && differs;
-        rate <= MOST_DAMPED * mode && (apart || decays_apart)
+        // Every law along a path that a drive repeats has lines at the multiples of the repetition.
+        let repeated = swing.repeats.is_some_and(|own| own.has(line));
+        rate <= MOST_DAMPED * mode && (apart || decays_apart) && !repeated
     }
 
     fn free_hidden(&self) -> usize {

@@ -37,6 +37,8 @@ Examples:
                                    a job array with one task for each share
   trainer diagnose --rigs A/ B/ C/ --out DIR
                                    several rigs of one build: what they share, and where they differ
+  trainer diagnose log.csv --nominal arm.urdf            a robot: one diagnosis for each joint, and a run of the whole
+  trainer diagnose a.csv b.csv --nominal arm.urdf --joint elbow --columns elbow=q2,tau2 --check c.csv
 
 Separator, decimal sign, columns and units are found from the file and printed: names such as time,
 timestamp_ms, angle [deg], theta, displacement_m, position, velocity_rad_s, gyro (deg/s), torque_nm;
@@ -72,6 +74,8 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) resume: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
+    #[command(flatten)]
+    pub(crate) robot: Robot,
     /// Largest number of effects in one fitted set, 1 to 5 [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
     pub(crate) most_effects: Option<u8>,
@@ -91,6 +95,26 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) share: ShareOptions,
     #[command(flatten)]
     pub(crate) output: Output,
+}
+
+/// Options for a robot of several joints.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "A robot of several joints (--nominal ARM.urdf)")]
+pub(crate) struct Robot {
+    /// A joint to diagnose; may be given several times [default: every joint]
+    #[arg(long = "joint", value_name = "NAME")]
+    pub(crate) joints: Vec<String>,
+    /// Columns of a joint; may be given several times [default: by names such as elbow_position, q_elbow,
+    /// /joint_states/elbow/position, or q1, tau1 in the order of the joints]
+    #[arg(long, value_name = "JOINT=POSITION,TORQUE")]
+    pub(crate) columns: Vec<String>,
+    /// Inertia of a rotor at its joint, that of the rotor times the square of the gear ratio, in kg m^2; may be given
+    /// several times [default: found from the recordings]
+    #[arg(long = "armature", value_name = "JOINT=INERTIA")]
+    pub(crate) armatures: Vec<String>,
+    /// Recordings that are not fitted: the repaired model is run over them
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    pub(crate) check: Vec<PathBuf>,
 }
 
 /// Options for reading record files.

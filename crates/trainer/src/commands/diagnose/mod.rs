@@ -5,6 +5,7 @@ pub(crate) mod batch;
 mod kept;
 mod labels;
 mod rigs;
+mod robot;
 mod summary;
 
 use crate::error::{LaunchError, TrainerError};
@@ -33,6 +34,7 @@ pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerE
     match (&arguments.batch, &arguments.out, arguments.nominal.as_ref().or(beside.as_ref())) {
         (Some(cases), Some(answers), _) => batch::batch(arguments, cases, answers),
         _ if !arguments.rigs.is_empty() => rigs::rigs(arguments),
+        (_, _, Some(model)) if robot::is_robot(model) => robot::robot(arguments, model),
         (_, _, Some(nominal)) => single(arguments, nominal),
         _ => Err(TrainerError::NoNominal {
             record: arguments.records.first().map(|path| path.display().to_string()).unwrap_or_default(),

@@ -1,0 +1,124 @@
+//! Closed loop: the whole model, run under the recorded torques from measured states.
+
+use crate::error::RobotError;
+use crate::projection::{Motion, Recording, interpolated};
+use dynamics::tree::{Acting, State, Tree, TreeError, rollout};
+use std::ops::Range;
+
+/// Errors of a model at one joint.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JointError {
+    /// Sum of the squared differences of positions, in rad² or m².
+    pub squares: f64,
+    /// Number of samples.
+    pub samples: usize,
+}
+
+impl JointError {
+    /// Returns the root mean square; `None` without samples.
+    #[must_use]
+    pub fn rms(&self) -> Option<f64> {
+        (self.samples > 0).then(|| (self.squares / self.samples as f64).sqrt())
+    }
+}
+
+/// Errors of one variant of a model on a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosedLoop {
+    /// Errors by joint; `None` if a motion left every bound.
+    pub joints: Option<Vec<JointError>>,
+    /// Number of runs.
+    pub runs: usize,
+}
+
+/// Times and torques of one joint.
+type Torques<'a> = (&'a [f64], &'a [f64]);
+
+/// Returns times and torques of every joint.
+fn torques<'a>(recording: &'a Recording, names: &[&str]) -> Result<Vec<Torques<'a>>, RobotError> {
+    let mut torques = Vec::new();
+    for (channel, name) in recording.joints.iter().zip(names) {
+        let own = channel.torques.as_ref().ok_or_else(|| RobotError::NoColumn {
+            log: recording.name.clone(),
+            quantity: "torque",
+            joint: (*name).to_owned(),
+            columns: "positions only".to_owned(),
+            option: format!("{name}=POSITION,TORQUE"),
+        })?;
+        torques.push((channel.times.as_slice(), own.as_slice()));
+    }
+    Ok(torques)
+}
+
+/// Runs a model with what acts in its joints over a recording, in runs of `span` seconds from the measured state, and
+/// compares the positions. Only the part of the recording between two shares of its length is used.
+///
+/// # Errors
+/// [`RobotError::NoColumn`] if a torque was not recorded; [`RobotError::Short`] for a recording below a second;
+/// [`RobotError::Tree`] from the model.
+pub fn closed_loop(
+    tree: &Tree,
+    acting: &[Acting],
+    recording: &Recording,
+    (span, part): (f64, Range<f64>),
+) -> Result<ClosedLoop, RobotError> {
+    let motion = Motion::of(recording)?;
+    let names: Vec<&str> = tree.names().collect();
+    let torques = torques(recording, &names)?;
+    let Some(first) = recording.joints.first() else { return Ok(ClosedLoop { joints: None, runs: 0 }) };
+    let width = motion.width();
+    let count = first.times.len();
+    let from = ((part.start * count as f64) as usize).max(width);
+    let to = ((part.end * count as f64) as usize).min(count.saturating_sub(width));
+    let times = first.times.get(from..to).unwrap_or_default();
+    let mut errors = vec![JointError::default(); names.len()];
+    let mut runs = 0;
+    let mut at = 0;
+    while let Some(&begin) = times.get(at) {
+        let end = at + times.get(at..).unwrap_or_default().partition_point(|time| *time <= begin + span);
+        let run = times.get(at..end).unwrap_or_default();
+        // A rest that is shorter than half a run would weigh its first moments twice.
+        let lasts = run.last().map_or(0.0, |last| last - begin);
+        if runs > 0 && lasts < 0.5 * span || run.len() < 2 {
+            break;
+        }
+        let along = |time: f64| -> Vec<f64> {
+            // A channel has samples: its length was checked.
+            torques.iter().map(|(times, own)| interpolated(times, own, time).unwrap_or(0.0)).collect()
+        };
+        let start = motion.state(begin);
+        let inputs: Vec<Vec<f64>> = run.iter().map(|time| along(*time)).collect();
+        let path = match rollout(tree, acting, &start, run, &inputs) {
+            Ok(path) => path,
+            Err(TreeError::Diverged { .. } | TreeError::NoInertia { .. }) => {
+                return Ok(ClosedLoop { joints: None, runs });
+            }
+            Err(source) => return Err(RobotError::Tree { file: recording.name.clone(), source }),
+        };
+        for (time, position) in run.iter().zip(path) {
+            for ((error, channel), own) in errors.iter_mut().zip(&recording.joints).zip(position) {
+                let Some(measured) = interpolated(&channel.times, &channel.positions, *time) else {
+                    continue;
+                };
+                error.squares += (own - measured).powi(2);
+                error.samples += 1;
+            }
+        }
+        runs += 1;
+        at = end;
+    }
+    Ok(ClosedLoop { joints: Some(errors), runs })
+}
+
+impl Motion<'_> {
+    /// Returns the smoothed state of all joints at a time.
+    fn state(&self, time: f64) -> State {
+        let joints = self.joints.iter().zip(&self.recording.joints);
+        // A channel has samples: its length was checked.
+        let at = |values: &[f64], times: &[f64]| interpolated(times, values, time).unwrap_or(0.0);
+        let (position, velocity) = joints
+            .map(|(own, channel)| (at(&own.position, &channel.times), at(&own.velocity, &channel.times)))
+            .unzip();
+        State { position, velocity }
+    }
+}

@@ -1,0 +1,170 @@
+//! Whole model of a robot against recordings, with what was found in its joints.
+
+use super::joint::JointAnswer;
+use super::read::{LoadedRecording, RobotQuestion};
+use crate::error::WorkflowError;
+use diagnosis::Settings;
+use dynamics::REGISTRY;
+use dynamics::tree::Acting;
+use rayon::prelude::*;
+use results::{ClosedLoopRecording, ClosedLoopRow, JointErrorRow};
+use robot::{ClosedLoop, JointError, Model, closed_loop};
+use std::ops::Range;
+
+/// Length of a run in seconds.
+const SPAN_S: f64 = 3.0;
+
+/// Share of a single recording that is fitted, if no other one is there to check with.
+const FITTED: f64 = 0.67;
+
+/// Recordings and coefficients of a check.
+struct Check<'a> {
+    recordings: Vec<&'a LoadedRecording>,
+    part: Range<f64>,
+    acting: [Vec<Acting>; 3],
+    held_out: String,
+}
+
+impl RobotQuestion {
+    /// Runs the whole model, as given, recalibrated and repaired, over recordings that were not fitted. Those of
+    /// [`super::RobotOptions::check`] serve if there are any; otherwise the coefficients of the named effects are
+    /// fitted again without the last recording, or without the last third of the only one.
+    ///
+    /// # Errors
+    /// [`WorkflowError`] if a torque was not recorded, or if a fit fails.
+    pub fn closed_loop(
+        &self,
+        answers: &[JointAnswer],
+        settings: &Settings,
+        seed: u64,
+    ) -> Result<ClosedLoopRow, WorkflowError> {
+        let check = self.check(answers, settings, seed)?;
+        let floors = self.floors(answers);
+        let mut rows = Vec::new();
+        let mut spans = Vec::new();
+        for own in &check.recordings {
+            let of = |acting: &Vec<Acting>| {
+                closed_loop(self.model.tree(), acting, &own.recording, (SPAN_S, check.part.clone()))
+            };
+            let found: Vec<ClosedLoop> =
+                check.acting.par_iter().map(of).collect::<Result<_, robot::RobotError>>()?;
+            let ends = own.recording.joints.first().map(|own| (own.times.first(), own.times.last()));
+            if let Some((Some(first), Some(last))) = ends {
+                spans.push((last - first) * (check.part.end - check.part.start));
+            }
+            rows.push(row(self, own, &found, &floors));
+        }
+        let longest = spans.into_iter().fold(0.0, f64::max);
+        Ok(ClosedLoopRow {
+            recordings: rows,
+            span_s: SPAN_S.min(longest),
+            is_held_out: true,
+            held_out: check.held_out,
+        })
+    }
+
+    fn check(
+        &self,
+        answers: &[JointAnswer],
+        settings: &Settings,
+        seed: u64,
+    ) -> Result<Check<'_>, WorkflowError> {
+        let (fitted, others): (Vec<usize>, Vec<usize>) = (0..self.recordings.len())
+            .partition(|index| self.recordings.get(*index).is_some_and(|own| own.fitted));
+        let named = |indices: &[usize]| -> Vec<&LoadedRecording> {
+            indices.iter().filter_map(|index| self.recordings.get(*index)).collect()
+        };
+        if !others.is_empty() {
+            return Ok(Check {
+                recordings: named(&others),
+                part: 0.0..1.0,
+                acting: self.acting(answers),
+                held_out: "the recordings given with --check, which no fit has seen".to_owned(),
+            });
+        }
+        let (train, recordings, part, held_out) = match fitted.split_last() {
+            Some((last, before)) if !before.is_empty() => (
+                (before.to_vec(), 1.0),
+                named(&[*last]),
+                0.0..1.0,
+                "the last recording; the coefficients of the named effects were fitted to the others",
+            ),
+            _ => (
+                (fitted.clone(), FITTED),
+                named(&fitted),
+                FITTED..1.0,
+                "the last third of the recording; the coefficients of the named effects were fitted to the rest",
+            ),
+        };
+        let (indices, share) = train;
+        let again = |own: &JointAnswer| self.again(own, (&indices, share), settings, seed);
+        let again: Vec<JointAnswer> = answers.par_iter().map(again).collect::<Result<_, _>>()?;
+        Ok(Check { recordings, part, acting: self.acting(&again), held_out: held_out.to_owned() })
+    }
+
+    /// Fits the effects that an answer names, and no others, to other recordings.
+    fn again(
+        &self,
+        own: &JointAnswer,
+        (recordings, share): (&[usize], f64),
+        settings: &Settings,
+        seed: u64,
+    ) -> Result<JointAnswer, WorkflowError> {
+        let named = &own.answer.result.verdict.effects;
+        let ids = REGISTRY.iter().map(|effect| effect.id().to_owned());
+        let without = ids.filter(|id| !named.contains(id)).collect();
+        let settings = Settings { without, ..settings.clone() };
+        let joint = self.model.joints().iter().position(|joint| joint.name == own.joint.name);
+        // An answer is that of a joint of the model.
+        self.joint(joint.unwrap_or(0), recordings, share)?.answer(&settings, seed, &|_| true)
+    }
+
+    /// Returns what acts in every joint: as given, recalibrated, repaired. A joint without an answer stays as given.
+    fn acting(&self, answers: &[JointAnswer]) -> [Vec<Acting>; 3] {
+        let of = |variant: usize| {
+            let joint = |joint: &robot::JointInfo| {
+                let answer = answers.iter().find(|own| own.joint.name == joint.name);
+                let given = || Acting { damping: joint.damping, ..Acting::default() };
+                answer.and_then(|own| own.acting.get(variant)).cloned().unwrap_or_else(given)
+            };
+            self.model.joints().iter().map(joint).collect()
+        };
+        [of(0), of(1), of(2)]
+    }
+
+    /// Returns the noise of each joint's sensor; 0 for a joint without an answer.
+    fn floors(&self, answers: &[JointAnswer]) -> Vec<f64> {
+        let of = |joint: &robot::JointInfo| {
+            let answer = answers.iter().find(|own| own.joint.name == joint.name);
+            // Its errors are then compared with nothing.
+            answer.map_or(0.0, |own| own.answer.result.gap.noise_floor)
+        };
+        self.model.joints().iter().map(of).collect()
+    }
+}
+
+fn row(
+    question: &RobotQuestion,
+    own: &LoadedRecording,
+    found: &[ClosedLoop],
+    floors: &[f64],
+) -> ClosedLoopRecording {
+    let error = |variant: usize, joint: usize| {
+        let joints = found.get(variant)?.joints.as_ref()?;
+        joints.get(joint).and_then(JointError::rms)
+    };
+    let joints = question.model.joints().iter().enumerate().zip(floors);
+    let joints = joints.map(|((at, joint), floor)| JointErrorRow {
+        unit: if joint.slides { "m" } else { "rad" }.to_owned(),
+        nominal: error(0, at),
+        recalibrated: error(1, at),
+        repaired: error(2, at),
+        noise_floor: *floor,
+    });
+    ClosedLoopRecording {
+        path: own.recording.name.clone(),
+        // Variants have as many runs each, unless their motion leaves every bound.
+        runs: found.iter().map(|own| own.runs).max().unwrap_or(0),
+        joints: joints.collect(),
+    }
+}

@@ -1,0 +1,302 @@
+//! One joint of a robot as a question of one oscillator, and its answer as that of the joint.
+
+use super::read::{LoadedRecording, RobotQuestion};
+use crate::error::WorkflowError;
+use crate::question::{Answer, Question};
+use crate::read::Given;
+use diagnosis::{DiagnosisError, Settings};
+use dynamics::tree::Acting;
+use dynamics::{
+    Active, Coefficients, Coordinate, DynamicsError, KnownEffect, Nominal, NominalSimulator, System,
+};
+use experiment::StatedNominal;
+use export::{equation_latex, equation_text};
+use record::{Fault, Quantity, Record};
+use results::{CalibratedRow, Calibration, Equation, JointRepairRow, TrackingRow, WithInterval};
+use robot::{JointInfo, Model, Projected, Recording, RobotError, Tracking, project};
+use std::f64::consts::TAU;
+
+/// Effects that are no candidates for a joint: they would change the spring and damper that hold its simulator, or
+/// the whole drive, of which the measured torque is only a part; or bend the sensor's readings, from which the drive is
+/// computed too. A constant torque is part of the calibration. Any line of the drive's noise, which is red, would pass for
+/// a forcing or a second body. The weight of links depends on all joints and is the model's; along one joint's angle, with
+/// a spring, it would only imitate a spring that hardens.
+const NOT_OF_A_JOINT: [&str; 14] = [
+    "backlash",
+    "stiffness_drift",
+    "damping_drift",
+    "input_delay",
+    "input_saturation",
+    "sensor_lag",
+    "sensor_nonlinearity",
+    "sensor_drift",
+    "sensor_saturation",
+    "clock_drift",
+    "constant_torque",
+    "periodic_forcing",
+    "flexible_coupling",
+    "gravity",
+];
+
+/// One joint along the measured motion.
+pub struct JointQuestion {
+    /// Joint as the model describes it.
+    pub joint: JointInfo,
+    /// Spring and damper that hold its simulator to the measured motion.
+    pub tracking: Tracking,
+    /// Mean of the constant torques that were taken out of the drive, in N m or N.
+    pub offset: f64,
+    /// Question of the joint as an oscillator.
+    pub question: Question,
+}
+
+/// Answer for one joint.
+pub struct JointAnswer {
+    /// Joint as the model describes it.
+    pub joint: JointInfo,
+    /// Answer, with the coefficients of the joint itself.
+    pub answer: Answer,
+    /// Spring and damper that held its simulator to the measured motion.
+    pub tracking: TrackingRow,
+    /// Coefficients beside those of the effects.
+    pub repair: JointRepairRow,
+    /// Torques in the joint beside its drive: as given, recalibrated, and repaired.
+    pub acting: [Acting; 3],
+}
+
+impl RobotQuestion {
+    /// Builds the question of one joint from recordings by index, or from a part of each, by the share of its
+    /// samples from the beginning.
+    ///
+    /// # Errors
+    /// [`WorkflowError`].
+    pub fn joint(
+        &self,
+        joint: usize,
+        recordings: &[usize],
+        share: f64,
+    ) -> Result<JointQuestion, WorkflowError> {
+        let used: Vec<&LoadedRecording> =
+            recordings.iter().filter_map(|index| self.recordings.get(*index)).collect();
+        let samples: Vec<Recording> = used.iter().map(|own| begun(&own.recording, share)).collect();
+        let projected = project(&self.model, &samples, joint)?;
+        let info = self.model.joints().get(joint).cloned().ok_or_else(|| RobotError::Model {
+            quantity: "joint",
+            problem: format!("it has no joint {joint}"),
+        })?;
+        let stated = stated(&info, &projected.tracking, &self.name)?;
+        let mut given = Vec::new();
+        for (own, part) in used.iter().zip(&projected.parts) {
+            given.push(of_part(own, &projected, part, &stated)?);
+        }
+        let question = Question::new(given, stated, self.name.clone())?;
+        let count = projected.parts.len().max(1) as f64;
+        let offset = projected.parts.iter().map(|part| part.offset).sum::<f64>() / count;
+        Ok(JointQuestion { joint: info, tracking: projected.tracking, offset, question })
+    }
+}
+
+/// Returns the first part of a recording.
+fn begun(recording: &Recording, share: f64) -> Recording {
+    let mut part = recording.clone();
+    for channel in &mut part.joints {
+        let count = (share * channel.times.len() as f64).round() as usize;
+        channel.times.truncate(count);
+        channel.positions.truncate(count);
+        channel.torques.iter_mut().for_each(|own| own.truncate(count));
+    }
+    part
+}
+
+/// Returns the nominal simulator of a joint, held to the measured motion.
+fn stated(joint: &JointInfo, tracking: &Tracking, file: &str) -> Result<StatedNominal, WorkflowError> {
+    let refused = |error: DynamicsError| WorkflowError::Nominal {
+        file: file.to_owned(),
+        problem: format!("joint `{}`: {error}", joint.name),
+    };
+    let coordinate = if joint.slides { Coordinate::Displacement } else { Coordinate::Angle };
+    let nominal = Nominal::from_coefficients(Coefficients {
+        inertia: tracking.inertia,
+        damping: tracking.damping + joint.damping,
+        stiffness: tracking.stiffness,
+        rest_angle: 0.0,
+        input_gain: 1.0,
+    })
+    .map_err(refused)?
+    .with_coordinate(coordinate);
+    let mut effects = Vec::new();
+    if joint.friction > 0.0 {
+        let active = Active::named("coulomb_friction", &[("torque", joint.friction)]).map_err(refused)?;
+        effects.push(KnownEffect { active, recalibrate: true });
+    }
+    let simulator = NominalSimulator::new(nominal, effects).map_err(refused)?;
+    Ok(StatedNominal { nominal, simulator, driven: true, actuator: None })
+}
+
+/// Returns the samples of one joint in a recording with its drive as input.
+fn of_part(
+    own: &LoadedRecording,
+    projected: &Projected,
+    part: &robot::Part,
+    stated: &StatedNominal,
+) -> Result<Given, WorkflowError> {
+    let name = &own.recording.name;
+    let short = || RobotError::Short { log: name.clone(), seconds: 0.0 };
+    let loaded = own.joints.get(projected.joint).ok_or_else(short)?;
+    let range = part.from..part.from + part.drive.len();
+    let cut = |values: &[f64]| values.get(range.clone()).map(<[f64]>::to_vec).ok_or_else(short);
+    let (stamps, values) = (cut(loaded.record.stamps_s())?, cut(loaded.record.values())?);
+    let record =
+        Record::new(stamps, values, Some(part.drive.clone()), Quantity::Position, loaded.record.unit());
+    let fault = |fault: Fault| WorkflowError::Record(fault.in_file(name));
+    let mut record = record.map_err(fault)?;
+    if let Some(rows) = loaded.record.rows() {
+        record = record.with_rows(rows.get(range.clone()).map(<[usize]>::to_vec).ok_or_else(short)?);
+    }
+    let mut loaded = crate::read::Loaded { record, ..loaded.clone() };
+    // Angles of several turns were checked when the recording was read.
+    loaded.source.reading.value.unit = None;
+    let mut given = loaded.given(stated)?;
+    given.observations = given.observations.with_drive_noise(projected.drive_noise);
+    Ok(given)
+}
+
+impl JointQuestion {
+    /// Computes the diagnosis of the joint.
+    ///
+    /// # Errors
+    /// As [`Question::answer`].
+    pub fn answer(
+        &self,
+        settings: &Settings,
+        seed: u64,
+        goes_on: &(dyn Fn(&'static str) -> bool + Sync),
+    ) -> Result<JointAnswer, WorkflowError> {
+        let mut settings = settings.clone();
+        settings.without.extend(NOT_OF_A_JOINT.map(str::to_owned));
+        let mut answer = self.question.answer_watched(&settings, seed, goes_on)?;
+        let Tracking { inertia, damping, stiffness } = self.tracking;
+        let calibration = answer.result.calibration.clone();
+        let with_offset = |mut own: JointRepairRow| {
+            own.torque_offset = own.torque_offset.map(|found| less(found, -self.offset));
+            own
+        };
+        let repair = with_offset(beyond(&calibration, &self.tracking, |row| row.repaired));
+        let recalibrated = with_offset(beyond(&calibration, &self.tracking, |row| row.recalibrated));
+        let acting = [
+            Acting { damping: self.joint.damping, effects: self.known(), ..Acting::default() },
+            acting(&recalibrated, self.recalibrated(&answer)),
+            acting(&repair, answer.found.repaired.effects.clone()),
+        ];
+        free(&mut answer, &self.tracking, &repair)?;
+        Ok(JointAnswer {
+            joint: self.joint.clone(),
+            tracking: TrackingRow {
+                inertia,
+                stiffness,
+                damping,
+                frequency_hz: (stiffness / inertia).sqrt() / TAU,
+            },
+            answer,
+            repair,
+            acting,
+        })
+    }
+
+    /// Returns the effects that the model has.
+    fn known(&self) -> Vec<Active> {
+        self.question.stated.simulator.effects().iter().map(|known| known.active).collect()
+    }
+
+    /// Returns the effects that the model has, with their recalibrated numbers.
+    fn recalibrated(&self, answer: &Answer) -> Vec<Active> {
+        let rows = &answer.result.calibration.effects;
+        let of = |active: &Active| {
+            let row = rows.iter().find(|row| row.id == active.id());
+            let numbers = row.map(|row| {
+                let value = |own: &CalibratedRow| own.recalibrated.map_or(own.nominal, |own| own.value);
+                row.parameters.iter().map(move |(name, own)| (name.as_str(), value(own)))
+            });
+            let numbers: Vec<(&str, f64)> = numbers.into_iter().flatten().collect();
+            Active::named(active.id(), &numbers).unwrap_or(*active)
+        };
+        self.known().iter().map(of).collect()
+    }
+}
+
+/// Returns an estimate less a constant.
+fn less(own: WithInterval, by: f64) -> WithInterval {
+    WithInterval { value: own.value - by, interval_95: own.interval_95.map(|end| end - by) }
+}
+
+/// Returns the coefficients of a joint from those of its oscillator.
+fn beyond(
+    calibration: &Calibration,
+    tracking: &Tracking,
+    of: impl Fn(&CalibratedRow) -> Option<WithInterval>,
+) -> JointRepairRow {
+    let stiffness = of(&calibration.stiffness);
+    let offset = of(&calibration.rest_angle).map(|rest| {
+        let by = stiffness.map_or(tracking.stiffness, |own| own.value);
+        WithInterval { value: by * rest.value, interval_95: rest.interval_95.map(|end| by * end) }
+    });
+    JointRepairRow {
+        armature: of(&calibration.inertia).map(|own| less(own, tracking.inertia)),
+        damping: of(&calibration.damping).map(|own| less(own, tracking.damping)),
+        stiffness: stiffness.map(|own| less(own, tracking.stiffness)),
+        torque_offset: offset,
+    }
+}
+
+/// Returns what acts in a joint by its fitted coefficients; one that is not determined is 0.
+fn acting(repair: &JointRepairRow, effects: Vec<Active>) -> Acting {
+    // The model keeps its own value.
+    let value = |own: Option<WithInterval>| own.map_or(0.0, |own| own.value);
+    Acting {
+        inertia: value(repair.armature),
+        damping: value(repair.damping),
+        stiffness: value(repair.stiffness),
+        torque: value(repair.torque_offset),
+        effects,
+    }
+}
+
+/// Takes spring and damper out of an answer: the joint alone remains.
+fn free(answer: &mut Answer, tracking: &Tracking, repair: &JointRepairRow) -> Result<(), WorkflowError> {
+    let shift = |row: &mut CalibratedRow, by: f64| {
+        row.nominal -= by;
+        row.recalibrated = row.recalibrated.map(|own| less(own, by));
+        row.repaired = row.repaired.map(|own| less(own, by));
+    };
+    let calibration = &mut answer.result.calibration;
+    shift(&mut calibration.damping, tracking.damping);
+    shift(&mut calibration.stiffness, tracking.stiffness);
+    // The position at which the spring is relaxed tells a constant torque, which stands with the joint.
+    calibration.rest_angle.recalibrated = None;
+    calibration.rest_angle.repaired = None;
+    calibration.rest_angle.determined = None;
+    let refused = |error: DynamicsError| WorkflowError::Diagnosis {
+        file: answer.result.nominal.clone(),
+        source: DiagnosisError::Dynamics(error),
+    };
+    let own = *answer.repaired.system.nominal();
+    let mut effects = answer.repaired.system.effects().to_vec();
+    // A constant torque that the repair has already stays one.
+    let offset = repair.torque_offset.filter(|own| own.value != 0.0);
+    if let Some(offset) = offset.filter(|_| effects.iter().all(|active| active.id() != "constant_torque")) {
+        effects.push(Active::named("constant_torque", &[("torque", offset.value)]).map_err(refused)?);
+    }
+    // Neither a damper nor a spring of a joint gives energy: a value below 0 is an error of the fit.
+    let nominal = own
+        .with_coefficients(Coefficients {
+            damping: (own.damping() - tracking.damping).max(0.0),
+            stiffness: (own.stiffness() - tracking.stiffness).max(0.0),
+            rest_angle: 0.0,
+            ..own.coefficients()
+        })
+        .map_err(refused)?;
+    answer.repaired.system = System::new(nominal, effects).map_err(refused)?;
+    answer.result.equation =
+        Equation { text: equation_text(&answer.repaired), latex: equation_latex(&answer.repaired) };
+    Ok(())
+}

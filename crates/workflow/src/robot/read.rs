@@ -1,0 +1,218 @@
+//! Reading of a robot's recordings and its model.
+
+use crate::error::WorkflowError;
+use crate::logs::logs;
+use crate::read::{Loaded, Reading};
+use record::{Fault, Filter, Unit, extremes};
+use robot::columns::{JointColumns, Stated, find, find_long};
+use robot::{Channel, JointInfo, Model, Recording, RobotError, Urdf};
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// Options of a robot's diagnosis beside those of reading.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RobotOptions {
+    /// Names of the joints to diagnose; all if empty.
+    pub joints: Vec<String>,
+    /// Columns of joints, where the header does not tell.
+    pub columns: Vec<Stated>,
+    /// Inertia of rotors at the joints, by name.
+    pub armatures: Vec<(String, f64)>,
+    /// Recordings that are not fitted, with which the whole model is checked.
+    pub check: Vec<PathBuf>,
+}
+
+/// Recording of all joints with its source.
+#[derive(Debug, Clone)]
+pub struct LoadedRecording {
+    /// Samples of all joints.
+    pub recording: Recording,
+    /// The same, joint by joint, with source and clock.
+    pub joints: Vec<Loaded>,
+    /// `true` if the recording is fitted; otherwise the whole model is checked with it.
+    pub fitted: bool,
+}
+
+/// Recordings of a robot and its model.
+pub struct RobotQuestion {
+    /// Model of the robot.
+    pub model: Urdf,
+    /// Name of the model's file.
+    pub name: String,
+    /// Recordings, in the order given, those to check last.
+    pub recordings: Vec<LoadedRecording>,
+    /// Indices of the joints to diagnose.
+    pub asked: Vec<usize>,
+}
+
+/// Columns of one joint, with the lines that belong to it.
+struct Place {
+    columns: JointColumns,
+    filter: Option<Filter>,
+}
+
+impl RobotQuestion {
+    /// Reads recordings and a model from files; a folder stands for the logs in it.
+    ///
+    /// # Errors
+    /// [`WorkflowError`] with the file, the place in it and the option to set.
+    pub fn read(
+        records: &[PathBuf],
+        model: &Path,
+        options: &RobotOptions,
+        reading: &Reading,
+    ) -> Result<Self, WorkflowError> {
+        let name = model.display().to_string();
+        let text = std::fs::read_to_string(model).map_err(|error| RobotError::NotXml {
+            file: name.clone(),
+            problem: format!("it cannot be read: {error}"),
+        })?;
+        let model = Urdf::parse(&name, &text)?.with_armatures(&options.armatures)?;
+        let mut recordings: Vec<LoadedRecording> = Vec::new();
+        for (paths, fitted) in [(records, true), (&options.check, false)] {
+            for path in paths {
+                for log in logs(path)? {
+                    recordings.push(load(&log, &model, options, (reading, fitted))?);
+                }
+            }
+        }
+        check_distinct(&recordings)?;
+        let asked = asked(model.joints(), &options.joints)?;
+        check_usable(&recordings, model.joints(), &asked)?;
+        Ok(Self { model, name, recordings, asked })
+    }
+}
+
+/// Returns the indices of the joints that are asked for.
+fn asked(joints: &[JointInfo], names: &[String]) -> Result<Vec<usize>, WorkflowError> {
+    let place = |name: &String| {
+        joints.iter().position(|joint| joint.name == *name).ok_or_else(|| {
+            let known: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+            RobotError::Unknown { name: name.clone(), what: "joint of the model", known: known.join(", ") }
+        })
+    };
+    let mut asked: Vec<usize> = match names {
+        [] => (0..joints.len()).collect(),
+        names => names.iter().map(place).collect::<Result<_, _>>()?,
+    };
+    asked.sort_unstable();
+    asked.dedup();
+    Ok(asked)
+}
+
+/// Checks that recordings last long enough and hold the torques of the joints to diagnose.
+fn check_usable(
+    recordings: &[LoadedRecording],
+    joints: &[JointInfo],
+    asked: &[usize],
+) -> Result<(), WorkflowError> {
+    for LoadedRecording { recording, joints: loaded, .. } in recordings {
+        recording.check_length()?;
+        let lacks = |index: &&usize| recording.joints.get(**index).is_some_and(|own| own.torques.is_none());
+        if let Some(joint) = asked.iter().find(lacks).and_then(|index| joints.get(*index)) {
+            return Err(WorkflowError::Robot(RobotError::NoColumn {
+                log: recording.name.clone(),
+                quantity: "torque",
+                joint: joint.name.clone(),
+                // A recording has at least one joint.
+                columns: loaded.first().map(|own| own.columns.clone()).unwrap_or_default(),
+                option: format!("{}=POSITION,TORQUE", joint.name),
+            }));
+        }
+    }
+    Ok(())
+}
+
+fn check_distinct(recordings: &[LoadedRecording]) -> Result<(), WorkflowError> {
+    let digest = |own: &LoadedRecording| own.joints.first().map(|joint| joint.source.digest.clone());
+    for (at, one) in recordings.iter().enumerate() {
+        if let Some(other) = recordings.iter().skip(at + 1).find(|other| digest(other) == digest(one)) {
+            let [first, second] = [one, other].map(|own| own.recording.name.clone());
+            // Recordings have at least one joint.
+            return Err(WorkflowError::SameRecord { first, second, digest: digest(one).unwrap_or_default() });
+        }
+    }
+    Ok(())
+}
+
+fn load(
+    path: &Path,
+    model: &Urdf,
+    options: &RobotOptions,
+    (reading, fitted): (&Reading, bool),
+) -> Result<LoadedRecording, WorkflowError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        WorkflowError::Record(Fault::Unreadable { problem: error.to_string() }.in_file(&name))
+    })?;
+    let places = places(&name, &bytes, model.joints(), &options.columns)?;
+    let mut joints = Vec::new();
+    let mut channels = Vec::new();
+    for (joint, Place { columns, filter }) in model.joints().iter().zip(places) {
+        let mut reading = reading.clone();
+        let own = &mut reading.options;
+        own.columns.value = Some(columns.position.clone());
+        own.columns.input = Some(columns.torque.clone().unwrap_or_else(|| "none".to_owned()));
+        own.columns.filter = filter.or(own.columns.filter.take());
+        own.driven = columns.torque.is_some();
+        own.coordinate =
+            Some(if joint.slides { record::Coordinate::Displacement } else { record::Coordinate::Angle });
+        let stated_unit = own.columns.unit.is_some();
+        let mut loaded = Loaded::parse(&name, &bytes, &reading)?;
+        if !joint.slides && !stated_unit && !loaded.source.reading.value.is_stated_by_header() {
+            // A guess by the size of the numbers would differ from joint to joint.
+            reading.options.columns.unit = Some(Unit::Radian);
+            loaded = Loaded::parse(&name, &bytes, &reading)?;
+        }
+        if !joint.slides && !stated_unit {
+            check_turns(&loaded, joint)?;
+        }
+        let times = loaded.believed()?.times_s;
+        let torques = loaded.record.input().map(<[f64]>::to_vec);
+        channels.push(Channel { times, positions: loaded.record.values().to_vec(), torques });
+        joints.push(loaded);
+    }
+    Ok(LoadedRecording { recording: Recording { name, joints: channels }, joints, fitted })
+}
+
+fn places(
+    name: &str,
+    bytes: &[u8],
+    joints: &[JointInfo],
+    stated: &[Stated],
+) -> Result<Vec<Place>, WorkflowError> {
+    let header = record::titles(name, bytes).map_err(WorkflowError::Record)?;
+    let Some((column, values)) = header.joints else {
+        let found = find(name, &header.titles, joints, stated)?;
+        return Ok(found.into_iter().map(|columns| Place { columns, filter: None }).collect());
+    };
+    let columns = find_long(name, &header.titles)?;
+    let place = |joint: &JointInfo| match values.contains(&joint.name) {
+        true => {
+            let filter = Filter { column: column.clone(), value: joint.name.clone() };
+            Ok(Place { columns: columns.clone(), filter: Some(filter) })
+        }
+        false => Err(WorkflowError::Robot(RobotError::Unknown {
+            name: joint.name.clone(),
+            what: "value of the column joint, but a joint of the model",
+            known: values.join(", "),
+        })),
+    };
+    joints.iter().map(place).collect()
+}
+
+/// Refuses angles that are called radians only by their header, or by nothing, and exceed a turn on either side.
+fn check_turns(loaded: &Loaded, joint: &JointInfo) -> Result<(), WorkflowError> {
+    let [lowest, highest] = extremes(loaded.record.values());
+    let span = highest - lowest;
+    if loaded.record.unit() == Unit::Radian.symbol() && span > 2.0 * TAU {
+        return Err(WorkflowError::Robot(RobotError::Degrees {
+            log: loaded.source.path.clone(),
+            joint: joint.name.clone(),
+            column: loaded.source.reading.value.column.clone(),
+            span,
+            turns: span / TAU,
+        }));
+    }
+    Ok(())
+}
