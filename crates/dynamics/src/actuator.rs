@@ -149,9 +149,7 @@ impl Actuator {
         };
         let nominal: Nominal = joint.nominal().with_coefficients(oscillator)?;
         let mut effects = joint.effects().to_vec();
-        for (id, parameters, recalibrate) in self.effects(derivative, proportional) {
-            effects.push(KnownEffect { active: Active::named(id, &parameters)?, recalibrate });
-        }
+        effects.extend(self.effects(derivative, proportional)?);
         NominalSimulator::new(nominal, effects)
     }
 
@@ -172,37 +170,35 @@ impl Actuator {
         }
     }
 
-    /// Returns the effects of the loop: id, parameters, and whether a recalibration may move them.
-    fn effects(
-        &self,
-        derivative: f64,
-        proportional: f64,
-    ) -> Vec<(&'static str, Vec<(&'static str, f64)>, bool)> {
+    /// Returns the effects of the loop.
+    fn effects(&self, derivative: f64, proportional: f64) -> Result<Vec<KnownEffect>, DynamicsError> {
+        let known = |id: &str, parameters: &[(&str, f64)], recalibrate: bool| {
+            Active::named(id, parameters).map(|active| KnownEffect { active, recalibrate })
+        };
         let mut effects = Vec::new();
         if self.command == Command::Position && self.on_error {
-            let known = self.proportional.is_known() && self.derivative.is_known();
-            effects.push(("command_derivative", vec![("time", derivative / proportional)], !known));
+            let is_known = self.proportional.is_known() && self.derivative.is_known();
+            effects.push(known("command_derivative", &[("time", derivative / proportional)], !is_known)?);
         }
         let delay = self.delay.value().unwrap_or(0.0); // An unknown delay is looked for from none.
         if delay > 0.0 || !self.delay.is_known() {
-            effects.push(("input_delay", vec![("delay", delay)], !self.delay.is_known()));
+            effects.push(known("input_delay", &[("delay", delay)], !self.delay.is_known())?);
         }
-        match (self.torque_limit, self.no_load_speed) {
-            (Some(torque), Some(speed)) => effects.push((
-                "speed_torque_limit",
-                vec![("torque", torque), ("no_load_speed", speed)],
-                false,
-            )),
-            (Some(torque), None) if self.command == Command::Torque => {
-                effects.push(("input_saturation", vec![("torque", torque)], false));
-            }
-            (Some(torque), None) => effects.push(("torque_limit", vec![("torque", torque)], false)),
-            (None, _) => {}
+        if let Some(torque) = self.torque_limit {
+            effects.push(match self.no_load_speed {
+                Some(speed) => {
+                    known("speed_torque_limit", &[("torque", torque), ("no_load_speed", speed)], false)?
+                }
+                None if self.command == Command::Torque => {
+                    known("input_saturation", &[("torque", torque)], false)?
+                }
+                None => known("torque_limit", &[("torque", torque)], false)?,
+            });
         }
         if let Some(half_width) = self.dead_band {
-            effects.push(("drive_dead_band", vec![("half_width", half_width)], false));
+            effects.push(known("drive_dead_band", &[("half_width", half_width)], false)?);
         }
-        effects
+        Ok(effects)
     }
 }
 

@@ -95,6 +95,8 @@ impl From<WorkflowError> for Error {
             E::Record(_)
             | E::NoLogs { .. }
             | E::MissingInput { .. }
+            | E::StandsStill { .. }
+            | E::UnknownGain { .. }
             | E::OtherUnit { .. }
             | E::SameRecord { .. }
             | E::LooksLikeDegrees { .. }

@@ -109,16 +109,6 @@ impl Searched {
         let evidence = |set: &Fit| score(set, time) - price(&own.data, set, own.candidates.len(), 0.0);
         let most = both().map(|(fits, _)| evidence(&fits.0)).fold(f64::NEG_INFINITY, f64::max);
         let (fits, set) = both().max_by(|a, b| evidence(&a.0.1).total_cmp(&evidence(&b.0.1)))?;
-        for (fits, set) in both() {
-            eprintln!(
-                "BO {:?} own {:.1} other {:.1} rms {:.2e} {:.2e}",
-                set.hypothesis.ids(),
-                evidence(&fits.0),
-                evidence(&fits.1),
-                (fits.0.squares / fits.0.freedom()).sqrt(),
-                (fits.1.squares / fits.1.freedom()).sqrt()
-            );
-        }
         (evidence(&fits.1) > most).then(|| Known { by: self.interval.by, set: set.clone() })
     }
 
