@@ -46,6 +46,7 @@ mod run_folders;
 mod rust_interface;
 mod schema;
 mod searching;
+mod servo;
 mod shares;
 mod simulation;
 mod slurm;

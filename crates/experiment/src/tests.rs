@@ -286,11 +286,45 @@ fn a_nominal_simulator_is_read_with_what_it_may_leave_out() {
         let error = resolve_nominal(&document(&format!("{kept}{wrong}\n"))).unwrap_err();
         assert!(matches!(error, SettingsError::BadValue { .. }), "{wrong}: {error}");
     }
-    for key in ["inertia", "damping", "stiffness", "rest_angle"] {
+    for key in ["inertia", "damping", "stiffness"] {
         let kept: String =
             text.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
         let message = resolve_nominal(&document(&kept)).unwrap_err().to_string();
         assert!(message.contains(&format!("`{key}` is missing")), "{message}");
+    }
+}
+
+/// A servo's inner loop, whose numbers may be known, known within a tolerance, or unknown.
+#[test]
+fn an_actuator_is_read_with_what_it_leaves_open() {
+    let of = |text: &str| resolve_nominal(&document(&format!("inertia = 0.02\n[actuator]\n{text}")));
+    let servo = "kind = \"position\"\nproportional = { value = 3.0, tolerance = 1.0 }\nderivative = 0.12\n\
+                 derivative_on = \"error\"\ndelay = \"unknown\"\ngear_ratio = 10\nrotor_inertia = 1e-4\n";
+    let stated = of(servo).unwrap();
+    let own = stated.nominal.coefficients();
+    assert_eq!([own.stiffness, own.damping, own.input_gain, own.rest_angle], [3.0, 0.12, 3.0, 0.0]);
+    assert!((own.inertia - 0.03).abs() < 1e-15 && stated.driven);
+    let effects: Vec<(&str, bool)> =
+        stated.simulator.effects().iter().map(|own| (own.active.id(), own.recalibrate)).collect();
+    assert_eq!(effects, [("command_derivative", true), ("input_delay", true)]);
+    let unknown = of("kind = \"position\"\nproportional = \"unknown\"\nderivative = \"unknown\"\n").unwrap();
+    assert!(!unknown.driven, "the records have to tell the gain first");
+    let told = unknown.driven_by(5.0).unwrap();
+    assert!(told.driven && told.nominal.stiffness() == 5.0 && told.nominal.input_gain() == 5.0);
+    let limited =
+        of("kind = \"velocity\"\nderivative = 0.5\ntorque_limit = 2.0\ndead_band = 0.01\n").unwrap();
+    assert_eq!(limited.simulator.effects().len(), 2);
+    for (wrong, what) in [
+        ("kind = \"position\"\nderivative = 0.1\n", "`actuator.proportional` is missing"),
+        ("kind = \"heat\"\n", "kind"),
+        ("kind = \"position\"\nproportional = -3\nderivative = 0.1\n", "proportional"),
+        ("kind = \"position\"\nproportional = 3\nderivative = \"about 2\"\n", "unknown"),
+        ("kind = \"velocity\"\nderivative = 1\nproportional = 3\n", "leave it out"),
+        ("kind = \"torque\"\nintegral = 2\n", "integral"),
+        ("kind = \"position\"\nproportional = { value = 3 }\nderivative = 0.1\n", "tolerance"),
+    ] {
+        let message = of(wrong).unwrap_err().to_string();
+        assert!(message.contains(what), "{message}");
     }
 }
 
