@@ -54,6 +54,14 @@ pub(crate) fn add(result: &mut DiagnosisResult, servo: &Servo, gain: f64) {
             ratio(name, repaired, &row.unit);
         }
     }
+    let stiffness = result.calibration.stiffness.repaired.map(|own| own.value);
+    if let (Command::Position, Some(rest), Some(stiffness)) =
+        (command, result.calibration.rest_angle.repaired, stiffness)
+    {
+        // Where a position loop rests off its command, a constant load holds it.
+        let interval_95 = rest.interval_95.map(|end| end * stiffness);
+        ratio("load".to_owned(), WithInterval { value: rest.value * stiffness, interval_95 }, "N m");
+    }
     for effect in &result.effects {
         for (name, row) in effect.parameters.iter().filter(|(_, row)| row.determined) {
             let estimate = WithInterval { value: row.value, interval_95: row.interval_95 };

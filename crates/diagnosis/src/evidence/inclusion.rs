@@ -23,6 +23,7 @@ use crate::sets::archive::vanished;
 use crate::sets::proposals::proposal;
 use crate::sets::weights::{DISTINCT_DISTANCE, Weighed, acts, best_if_nothing_is_left};
 use dynamics::DynamicsError;
+use nalgebra::{DMatrix, DVector};
 use seed::Seed;
 
 /// Numbers of sets whose held-out predictions are computed: the best sets, and the best sets of plain laws
@@ -85,6 +86,9 @@ const PREDICTED: f64 = 1.2;
 /// parts fail, the whole may still be right, and of 20 such classes with evidence 11 were there.
 const UNCHANGED: f64 = 1.001;
 const UNLIKELY: f64 = 0.49;
+
+/// Upper ends of the chi-squared distribution's 95 %, by the number of sizes; none of no size.
+const TOGETHER: [f64; 5] = [f64::INFINITY, 3.84, 5.99, 7.81, 9.49];
 
 /// Difference in log evidence up to which two classes can replace each other.
 const REPLACED: f64 = 2.0 * DISTINCT;
@@ -185,7 +189,17 @@ impl<'a> Inclusion<'a> {
             // A saturation is as large as its bound is small, and that is a shape: its center says nothing of it.
             let has_size = parameters.first().is_some_and(|first| !first.shape);
             let mut sizes = fitted.chain(stated).filter(|(at, ..)| is_size(*at));
-            has_size && sizes.all(|(_, value, error)| !is_told(value, error))
+            // Two sizes that can replace each other are told together: friction that grows with the load, or not.
+            let places: Vec<usize> = (0..values.len()).filter(|at| is_size(*at)).collect();
+            let own =
+                DVector::from_iterator(places.len(), places.iter().filter_map(|at| values.get(*at).copied()));
+            let place = |at: usize| places.get(at).map_or(first, |own| first + own);
+            let covariance = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+                variance * entry(&fit.inverse, place(row), place(column))
+            });
+            let distance = covariance.cholesky().map_or(0.0, |covariance| own.dot(&covariance.solve(&own)));
+            let together = TOGETHER.get(places.len()).is_some_and(|least| distance > *least);
+            has_size && !together && sizes.all(|(_, value, error)| !is_told(value, error))
         })
     }
 
