@@ -39,6 +39,11 @@ impl CandidateLaw for SpeedTorqueLimit {
         ]
     }
 
+    /// At some torque it does what friction or drag does to most motions.
+    fn is_flexible(&self) -> bool {
+        true
+    }
+
     fn is_non_negative(&self) -> bool {
         true
     }

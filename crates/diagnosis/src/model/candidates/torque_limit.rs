@@ -27,6 +27,11 @@ impl CandidateLaw for TorqueLimit {
         vec![Parameter::shape("torque", 1e-2 * facts.drive_torque, facts.drive_torque)]
     }
 
+    /// At some torque it does what friction does to most motions.
+    fn is_flexible(&self) -> bool {
+        true
+    }
+
     fn is_non_negative(&self) -> bool {
         true
     }
