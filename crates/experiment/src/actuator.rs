@@ -19,8 +19,8 @@ const ABOVE_ZERO: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 /// Keys of `[actuator]`.
 pub const ACTUATOR: Section<'static> = Section { name: TABLE, fields: FIELDS };
 
-/// Numbers that may be known, known within a tolerance, or unknown.
-const STATED: [&str; 3] = ["proportional", "derivative", "delay"];
+/// Keys whose numbers may be known, known within a tolerance, or unknown.
+pub const ACTUATOR_STATED: [&str; 3] = ["proportional", "derivative", "delay"];
 
 const FIELDS: &[Field] = &[
     Field {
@@ -151,14 +151,22 @@ pub(crate) fn is_stated(document: &Document) -> bool {
 pub(crate) fn sections(document: &Document) -> Vec<(String, Vec<Field>)> {
     let own = FIELDS
         .iter()
-        .filter(|field| form(document, field.key) != Form::Tolerant || !STATED.contains(&field.key));
+        .filter(|field| form(document, field.key) != Form::Tolerant || !ACTUATOR_STATED.contains(&field.key));
     let own = own.map(|field| {
-        let is_word = STATED.contains(&field.key) && form(document, field.key) == Form::Word;
+        let is_word = ACTUATOR_STATED.contains(&field.key) && form(document, field.key) == Form::Word;
         if is_word { Field { kind: UNKNOWN, ..*field } } else { *field }
     });
-    let tolerant = STATED.into_iter().filter(|key| form(document, key) == Form::Tolerant);
+    let tolerant = ACTUATOR_STATED.into_iter().filter(|key| form(document, key) == Form::Tolerant);
     let tolerant = tolerant.map(|key| (format!("{TABLE}.{key}"), TOLERANT.to_vec()));
     std::iter::once((TABLE.to_owned(), own.collect())).chain(tolerant).collect()
+}
+
+fn command(kind: Option<&str>) -> Command {
+    match kind {
+        Some("velocity") => Command::Velocity,
+        Some("torque") => Command::Torque,
+        _ => Command::Position,
+    }
 }
 
 /// Reads the table.
@@ -181,11 +189,7 @@ pub(crate) fn actuator(document: &Document, resolved: &Resolved) -> Result<Actua
         Form::Absent => Ok(None),
         _ => number(key).map(Some),
     };
-    let command = match text("kind")?.as_deref() {
-        Some("velocity") => Command::Velocity,
-        Some("torque") => Command::Torque,
-        _ => Command::Position,
-    };
+    let command = command(text("kind")?.as_deref());
     let needs = |key: &str, needed: bool, for_what: &str| match (stated(key)?, needed) {
         (Some(stated), true) => Ok(stated),
         (None, false) => Ok(Stated::Known(0.0)),

@@ -18,7 +18,7 @@ pub mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub use actuator::ACTUATOR;
+pub use actuator::{ACTUATOR, ACTUATOR_STATED};
 pub use experiment::{
     CheckpointSettings, Claims, Comparison, DataSettings, Experiment, FitSettings, Single, Task, resolve,
 };

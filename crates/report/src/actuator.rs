@@ -1,4 +1,4 @@
-//! What a diagnosis tells of a joint's inner loop, in words.
+//! Inner loop of a joint in words: what is told of it whatever its gain.
 
 use crate::format::{estimate, quantity, significant, unit};
 use results::{ActuatorRow, DiagnosisResult, RatioRow};

@@ -1,4 +1,4 @@
-//! What a diagnosis of a joint with an inner loop tells of it.
+//! Inner loop of a joint in a diagnosis: its gain, and the ratios to it that the records tell.
 
 use super::interval::WithInterval;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What a diagnosis tells of a joint's inner loop: ratios to its gain, and numbers that are as uncertain as the gain.
+//! Inner loop of a joint in a diagnosis: ratios to its gain, and numbers that are as uncertain as the gain.
 //!
 //! Command and motion of a joint without a measured torque tell every torque relative to the gain of its loop: gains a
 //! factor of four apart explain them equally well. So a gain that is not known makes every torque uncertain by the

@@ -110,6 +110,13 @@ fn is_still(loaded: &Loaded) -> bool {
     [command, loaded.record.values()].iter().any(|values| span(values) <= STILL * step)
 }
 
+/// Says that a recording was left out.
+fn left_out_still(file: &str) -> String {
+    format!(
+        "{file} is left out: its command stands still or the joint does not follow it, so it tells nothing"
+    )
+}
+
 impl Question {
     /// Combines records and a nominal simulator.
     ///
@@ -188,16 +195,12 @@ impl Question {
                 .into_iter()
                 .for_each(|first: &mut Given| first.row.findings.extend(left_out(path)));
         }
-        if given.is_empty()
-            && let Some(file) = still.first()
-        {
+        if let (true, Some(file)) = (given.is_empty(), still.first()) {
             return Err(WorkflowError::StandsStill { file: file.clone() });
         }
         if let Some(first) = given.first_mut() {
-            first.row.findings.extend(gain.map(|(_, finding)| finding));
-            first.row.findings.extend(still.iter().map(|file| {
-                format!("{file} is left out: its command stands still or the joint does not follow it, so it tells nothing")
-            }));
+            let gain = gain.into_iter().map(|(_, finding)| finding);
+            first.row.findings.extend(gain.chain(still.iter().map(|file| left_out_still(file))));
         }
         Self::new(given, stated, nominal.display().to_string())
     }

@@ -325,21 +325,12 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
     let highest = center + to_position * values().fold(f64::NEG_INFINITY, f64::max);
     let lowest = center + to_position * values().fold(f64::INFINITY, f64::min);
     let amplitude = (highest - rest).abs().max((lowest - rest).abs());
-    let steps: Vec<f64> = records
-        .iter()
-        .flat_map(|r| r.times_s.iter().zip(r.times_s.iter().skip(1)).map(|(a, b)| b - a))
-        .filter(|step| *step > 0.0)
-        .collect();
-    let interval = median(&steps).max(f64::MIN_POSITIVE);
     let input = records.iter().filter_map(|record| record.input.as_ref()).flatten();
-    let gain = nominal.input_gain().abs();
-    let input_torque = input.fold(0.0, |most: f64, u| most.max(u.abs())) * gain;
-    let inertia = nominal.inertia();
-    let stiffness = inertia * frequency * frequency;
+    let input_torque = input.fold(0.0, |most: f64, u| most.max(u.abs())) * nominal.input_gain().abs();
+    let stiffness = nominal.inertia() * frequency * frequency;
     let drive_torque = match quantity {
         Quantity::Position => drive_torque(records, nominal),
-        _ if input_torque > 0.0 => input_torque + nominal.stiffness() * amplitude,
-        _ => 0.0,
+        _ => input_torque + if input_torque > 0.0 { nominal.stiffness() * amplitude } else { 0.0 },
     };
     let reading = values().fold(0.0, |most: f64, value| most.max(value.abs()));
     let speed = match quantity {
@@ -360,10 +351,10 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         drive_torque,
         drive_error: if nominal.stiffness() > 0.0 { drive_torque / nominal.stiffness() } else { 0.0 },
         duration: most(records, Observations::duration_s),
-        interval,
+        interval: interval(records),
         rest_moved: rest - nominal.rest_angle(),
         friction_known: knows_friction(simulator),
-        inertia,
+        inertia: nominal.inertia(),
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
         repeats: records.iter().find(|record| record.input.is_some()).and_then(repeats),
@@ -373,6 +364,16 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         damping: nominal.damping(),
         drive_noise: most(records, |record| record.drive_noise),
     }
+}
+
+/// Returns the median time between samples, in seconds.
+fn interval(records: &[Observations]) -> f64 {
+    let steps: Vec<f64> = records
+        .iter()
+        .flat_map(|r| r.times_s.iter().zip(r.times_s.iter().skip(1)).map(|(a, b)| b - a))
+        .filter(|step| *step > 0.0)
+        .collect();
+    median(&steps).max(f64::MIN_POSITIVE)
 }
 
 /// Returns the largest torque of input and nominal spring together, from the positions of driven records. Where a

@@ -197,6 +197,7 @@ impl<'a> Inclusion<'a> {
             let covariance = DMatrix::from_fn(places.len(), places.len(), |row, column| {
                 variance * entry(&fit.inverse, place(row), place(column))
             });
+            // Sizes without a covariance are told by nothing.
             let distance = covariance.cholesky().map_or(0.0, |covariance| own.dot(&covariance.solve(&own)));
             let together = TOGETHER.get(places.len()).is_some_and(|least| distance > *least);
             has_size && !together && sizes.all(|(_, value, error)| !is_told(value, error))

@@ -21,7 +21,7 @@ use crate::parse::Diagnosis;
 use crate::remarks::is_of_the_chain_only;
 use crate::tables::Fact;
 use crate::verdict::{self, Origin, Tone, Verdict};
-use crate::{ReportError, RunTexts, format};
+use crate::{ReportError, RunTexts, actuator_sentence, format};
 use budget::Share;
 use classes::{Group, Nameless};
 use tables::{CoefficientView, EffectView, GapView, RecordView};
@@ -48,6 +48,8 @@ struct DiagnosisPage<'a> {
     portrait_figures: Vec<Figure>,
     no_backbone: bool,
     coefficients: Vec<CoefficientView>,
+    /// Sentence on a joint's inner loop.
+    inner_loop: Option<String>,
     chain: Vec<Fact>,
     findings: Vec<String>,
     records: Vec<RecordView<'a>>,
@@ -93,6 +95,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         portrait_figures: portrait::figures(result),
         no_backbone: result.backbone.measured.is_empty(),
         coefficients: tables::coefficients(result),
+        inner_loop: Some(actuator_sentence(result)).filter(|sentence| !sentence.is_empty()),
         chain: tables::chain(result),
         findings: tables::findings(result),
         records: tables::records(result),

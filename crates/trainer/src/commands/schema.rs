@@ -6,8 +6,8 @@ use crate::terminal::console;
 use ::learn::learners::LEARNERS;
 use clap::ValueEnum;
 use experiment::{
-    KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, compare_schema, estimate_schema, learn_schema,
-    predict_schema,
+    ACTUATOR, ACTUATOR_STATED, KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, compare_schema,
+    estimate_schema, learn_schema, predict_schema,
 };
 use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
@@ -79,6 +79,7 @@ fn nominal_schema() -> Value {
     let simulation = simulate_schema();
     let mut root = json_schema::tables(&[NOMINAL]);
     json_schema::insert(&mut root, "", "nominal", json_schema::table(NOMINAL.fields));
+    json_schema::insert(&mut root, "", "actuator", actuator_schema());
     let properties = simulation.get("properties").and_then(Value::as_object).into_iter().flatten();
     for (name, schema) in properties {
         let is_own = root.pointer(&format!("/properties/{name}")).is_some();
@@ -98,16 +99,34 @@ fn nominal_schema() -> Value {
         "allOf": [
             { "oneOf": one_of(&NOMINAL_SWINGS) },
             { "oneOf": one_of(&NOMINAL_DECAYS) },
-            { "if": { "required": ["stiffness"] }, "then": { "required": ["inertia", "rest_angle"] } },
+            { "if": { "required": ["stiffness"] }, "then": { "required": ["inertia"] } },
         ],
     });
     if let Some(root) = root.as_object_mut() {
-        root.insert("anyOf".to_owned(), json!([{ "required": ["nominal"] }, stated]));
+        let servo = json!({ "required": ["inertia", "actuator"] });
+        root.insert("anyOf".to_owned(), json!([{ "required": ["nominal"] }, servo, stated]));
     }
     if let Some(table) = root.pointer_mut("/properties/nominal").and_then(Value::as_object_mut) {
         table.extend(stated.as_object().cloned().unwrap_or_default());
     }
     root
+}
+
+/// Builds the schema of an inner loop: some of its numbers may be known within a tolerance, or unknown.
+fn actuator_schema() -> Value {
+    let mut table = json_schema::table(ACTUATOR.fields);
+    let tolerant = json!({
+        "type": "object",
+        "properties": { "value": { "type": "number" }, "tolerance": { "type": "number", "exclusiveMinimum": 0 } },
+        "required": ["value", "tolerance"],
+        "additionalProperties": false,
+    });
+    for key in ACTUATOR_STATED {
+        if let Some(own) = table.pointer_mut(&format!("/properties/{key}")) {
+            *own = json!({ "anyOf": [own.take(), { "const": "unknown" }, tolerant] });
+        }
+    }
+    table
 }
 
 /// Prints the schema of one task, or that of all tasks, which depends on the file's `task`.
