@@ -255,20 +255,18 @@ impl<'a> Drive<'a> {
         self.input.map_or(f64::INFINITY, |input| input.piece(self.index).until + self.delay)
     }
 
-    /// Returns the raw input value at a time on the present piece, and its Taylor coefficients there; zeros
+    /// Returns the Taylor coefficients of the raw input at a time on the present piece, and those of its rate; zeros
     /// without an input.
-    pub(crate) fn raw(&self, time: f64) -> Cubic {
-        self.input.map_or([0.0; 4], |input| input.piece(self.index).expanded(time - self.delay))
-    }
-
-    /// Returns the rate of the raw input at a time on the present piece, and its Taylor coefficients there.
-    pub(crate) fn raw_rate(&self, time: f64) -> Cubic {
-        self.input.map_or([0.0; 4], |input| input.piece(self.index).rate_expanded(time - self.delay))
+    pub(crate) fn raw(&self, time: f64) -> [Cubic; 2] {
+        self.input.map_or([[0.0; 4]; 2], |input| {
+            let piece = input.piece(self.index);
+            [piece.expanded(time - self.delay), piece.rate_expanded(time - self.delay)]
+        })
     }
 
     /// Returns the torque at a time on the present piece, and its rate.
     pub(crate) fn torque(&self, time: f64) -> [f64; 2] {
-        let ([value, ..], [rate, ..]) = (self.raw(time), self.raw_rate(time));
+        let [[value, ..], [rate, ..]] = self.raw(time);
         [self.gain * value, self.gain * rate]
     }
 

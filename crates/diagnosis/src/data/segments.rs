@@ -386,7 +386,7 @@ fn drive_torque(records: &[Observations], nominal: &Nominal) -> f64 {
             inputs.zip(&record.values).map(|(u, value)| (nominal.input_gain() * u - spring(value)).abs());
         torques.fold(0.0, f64::max)
     };
-    records.iter().map(of).fold(0.0, f64::max)
+    most(records, of)
 }
 
 /// Returns `true` if the simulator has Coulomb friction whose torque is recalibrated.

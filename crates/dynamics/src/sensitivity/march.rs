@@ -215,7 +215,7 @@ impl<'a> March<'a> {
         let number = self.model.piece(&self.mode);
         debug_assert!(number < self.model.graphs.len(), "the piece was just found or written down");
         let room = (self.drive.until().min(self.end) - self.time).max(0.0);
-        let (raw, raw_rate) = (self.drive.raw(self.time), self.drive.raw_rate(self.time));
+        let [raw, raw_rate] = self.drive.raw(self.time);
         let Model { graphs, states, settings, .. } = &mut *self.model;
         let Some(piece) = graphs.get_mut(number) else { return Ok(()) };
         let graph = &mut piece.graph;
@@ -280,10 +280,8 @@ impl<'a> March<'a> {
         let graph = &mut piece.graph;
         couplings.clear();
         let slopes = |[_, slope, second, third]: Cubic| [slope, 2.0 * second, 3.0 * third];
-        let delayed = [
-            (INPUT, slopes(self.drive.raw(self.time))),
-            (INPUT_RATE, slopes(self.drive.raw_rate(self.time))),
-        ];
+        let [raw, raw_rate] = self.drive.raw(self.time);
+        let delayed = [(INPUT, slopes(raw)), (INPUT_RATE, slopes(raw_rate))];
         let mut links = [None; MOST_STATES];
         for (rate, link) in links.iter_mut().enumerate().take(*states) {
             let Some(node) = graph.rates.get(rate).copied() else { continue };

@@ -57,8 +57,7 @@ impl March<'_> {
     /// Computes by how much each free quantity delays the event: −δm/ṁ with the margin m of the edge.
     fn shift(&mut self, edge: Edge, number: usize) {
         let point = self.point();
-        let raw = self.drive.raw(self.time);
-        let raw_rate = self.drive.raw_rate(self.time);
+        let [raw, raw_rate] = self.drive.raw(self.time);
         let ([_, slope, ..], [_, curvature, ..]) = (raw, raw_rate);
         let Model { graphs, states, free, columns, shifts, .. } = &mut *self.model;
         let Some(piece) = graphs.get_mut(number) else { return };
