@@ -1,7 +1,7 @@
 //! Page of a robot: its joints, what each lacks, and the whole model against recordings.
 
 use askama::Template;
-use results::{FailedCase, JointErrorRow, JointRow, JointsResult, RecordingRow, WithInterval};
+use results::{FailedCase, JointRow, JointsResult, RecordingRow, WithInterval};
 
 use crate::classes::{Standing, capitalized, class_statements};
 use crate::format::{self, estimate, quantity, significant, unit};
@@ -160,27 +160,19 @@ fn joint(row: &JointRow) -> JointView<'_> {
 }
 
 fn errors(result: &JointsResult) -> Vec<ErrorView<'_>> {
-    let view = |joint: &'_ JointRow, row: &JointErrorRow| {
+    let rows = result.joints.iter().filter_map(|joint| Some((&joint.name, joint.closed_loop.as_ref()?)));
+    let views = rows.map(|(joint, row)| {
         let cell = |own: Option<f64>| {
             own.map_or_else(
                 || "left every bound".to_owned(),
                 |own| quantity(&significant(own, 3), unit(&row.unit)),
             )
         };
-        [
-            cell(row.nominal),
-            cell(row.recalibrated),
-            cell(row.repaired),
-            cell(Some(row.noise_floor)),
-            joint.name.clone(),
-        ]
-    };
-    let rows = result.joints.iter().filter_map(|joint| Some((joint, joint.closed_loop.as_ref()?)));
-    let rows = rows.map(|(joint, row)| {
-        let [nominal, recalibrated, repaired, floor, _] = view(joint, row);
-        ErrorView { joint: &joint.name, nominal, recalibrated, repaired, floor }
+        let (nominal, recalibrated) = (cell(row.nominal), cell(row.recalibrated));
+        let (repaired, floor) = (cell(row.repaired), cell(Some(row.noise_floor)));
+        ErrorView { joint, nominal, recalibrated, repaired, floor }
     });
-    rows.collect()
+    views.collect()
 }
 
 fn recording(row: &RecordingRow) -> RecordingView<'_> {
