@@ -243,6 +243,8 @@ fn what_can_sit_anywhere_on_a_record_is_flexible() {
         "damping_drift",
         "periodic_forcing",
         "flexible_coupling",
+        "torque_limit",
+        "speed_torque_limit",
         "sensor_drift",
         "clock_drift",
     ];
