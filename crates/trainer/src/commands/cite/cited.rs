@@ -126,6 +126,10 @@ pub(super) const CITED: &[(&str, &[&str])] = &[
         "de Silva, Sensors and Actuators, 2nd ed., CRC Press 2015 (eccentricity error of encoders)",
         &["desilva2015"],
     ),
+    (
+        "Åström, Hägglund, PID Controllers, 2nd ed., Instrument Society of America 1995, section 3.3",
+        &["astrom1995"],
+    ),
 ];
 
 /// Keys of the works that every diagnosis follows, whatever it finds: on the fits, the effective size of
