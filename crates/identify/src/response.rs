@@ -61,8 +61,6 @@ const GRID: u32 = 16;
 const DAMPINGS: [f64; 2] = [0.1, 0.5];
 /// Largest part of a record's variance that a response may leave.
 const UNEXPLAINED: f64 = 0.8;
-/// Deviation from rest, in standard deviations of the noise, from which something moves.
-const AT_REST: f64 = 6.0;
 /// Ratio of the mean squares that two fits leave, from which the part that the second leaves out is no part of the motion.
 const BETTER: f64 = 2.0;
 /// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
@@ -113,28 +111,10 @@ pub(crate) fn returning<'a>(
     };
     let whole = fit(0);
     // The first samples after a release tell the faster of two decays: they are left out only if they are no part of it.
-    let after = Some(held(record)).filter(|held| *held > 0).and_then(fit);
+    let after = Some(record.samples_at_rest()).filter(|held| *held > 0).and_then(fit);
     let is_after = |square: f64| whole.as_ref().is_none_or(|(of_whole, _)| *of_whole > BETTER * square);
     let found = after.filter(|(square, _)| is_after(*square)).or(whole);
     sprung(found.map(|(_, found)| found), record)
-}
-
-/// Returns the number of samples at the beginning of a record in which nothing moves: those before two in a row that
-/// differ from the mean of all before by more than the noise. 0 if they are more than half of it.
-fn held(record: &Record) -> usize {
-    let values = record.values();
-    let far = AT_REST * noise_level(values).max(record.quantum());
-    let mut sum = 0.0;
-    let mut beyond = 0;
-    let moved = values.iter().enumerate().position(|(at, value)| {
-        // The first sample is its own mean.
-        let mean = if at > 0 { sum / at as f64 } else { *value };
-        sum += value;
-        beyond = if (value - mean).abs() > far { beyond + 1 } else { 0 };
-        beyond == 2
-    });
-    // A record without motion begins with its first sample.
-    moved.map(|at| at - 1).filter(|held| 2 * held < values.len()).unwrap_or(0)
 }
 
 /// Returns the fit with the smallest residuals.

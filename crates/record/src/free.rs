@@ -43,6 +43,12 @@ const SLOWED: f64 = 4.0;
 /// Duration of missing samples, in half swings, from which a turning point may be missing.
 const GAP: f64 = 0.25;
 
+/// Part of a record from which a rest at its beginning is left out. A motion that begins slowly stays within the noise for
+/// less.
+const REST: f64 = 0.1;
+/// Deviation from rest, in standard deviations of the noise, from which something moves.
+const AT_REST: f64 = 6.0;
+
 /// A turning point of a record.
 #[derive(Debug, Clone, Copy)]
 struct Turn {
@@ -64,6 +70,9 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     }
     let values = record.values();
     let (mut turns, least) = turning_points(values);
+    if turns.len() <= FEWEST {
+        return after_rest(record, turns.len());
+    }
     // A record that begins within a half swing has its first turning point after that.
     let begins_within = HalfSwings::new(record, &turns, least).begins_within();
     turns.drain(..usize::from(begins_within));
@@ -88,6 +97,37 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let is_swing = breaks.len() > MANY && half_swings.regular_outside(&found) > SWINGS_OUTSIDE
         || half_swings.goes_on_after(&found);
     if is_most && !is_whole && !is_swing { found } else { Vec::new() }
+}
+
+/// Returns the motion after a rest if a record begins with one and then moves for so few half swings that these do not
+/// tell a free swing: the answer to a step, or to a release, of a well-damped system.
+fn after_rest(record: &Record, half_swings: usize) -> Vec<FreeSwing> {
+    let (held, samples) = (record.samples_at_rest(), record.len());
+    let is_rest = half_swings < FEWEST && held as f64 > REST * samples as f64;
+    let motion = FreeSwing { samples: [held, samples - 1], half_swings };
+    if is_rest { vec![motion] } else { Vec::new() }
+}
+
+impl Record {
+    /// Returns the number of samples at the beginning in which nothing moves: those before two in a row that differ from
+    /// the mean of all before by more than six times the noise or steps of the sensor. 0 if they are more than half of
+    /// the record.
+    #[must_use]
+    pub fn samples_at_rest(&self) -> usize {
+        let values = self.values();
+        let far = AT_REST * noise_level(values).max(self.quantum());
+        let mut sum = 0.0;
+        let mut beyond = 0;
+        let moved = values.iter().enumerate().position(|(at, value)| {
+            // The first sample is its own mean.
+            let mean = if at > 0 { sum / at as f64 } else { *value };
+            sum += value;
+            beyond = if (value - mean).abs() > far { beyond + 1 } else { 0 };
+            beyond == 2
+        });
+        // A record without motion begins with its first sample.
+        moved.map(|at| at - 1).filter(|held| 2 * held < values.len()).unwrap_or(0)
+    }
 }
 
 /// Returns the turning points of a series: extremes from which it turns back by eight times its noise and a

@@ -27,6 +27,9 @@ pub(crate) struct Heading {
 const DOUBTFUL: &[(&str, &[&str])] = &[
     ("a", &["current"]),
     ("n", &["force", "load"]),
+    // A column `h` is a height, and `min` a minimum.
+    ("h", &["t", "time", "elapsed", "duration"]),
+    ("min", &["t", "time", "elapsed", "duration"]),
     ("kg_m", &["torque", "moment"]),
     ("kg m", &["torque", "moment"]),
     ("kgm", &["torque", "moment"]),
@@ -100,11 +103,12 @@ fn bracketed(title: &str) -> Option<(&str, Option<Measure>)> {
 /// Parses `name_unit` or `name/unit` with the longest ending that is a unit. A name that is a unit of time is
 /// a time, and a name that is another unit of two letters or more is a quantity in that unit.
 fn suffixed(title: &str) -> (&str, Option<Measure>) {
-    if let Some(unit) = TimeUnit::parse(title).filter(|unit| *unit != TimeUnit::Iso) {
-        return (title, Some(Measure::Time(unit)));
-    }
     let doubtful =
         |ending: &str| DOUBTFUL.iter().find(|(unit, _)| ending.eq_ignore_ascii_case(unit)).map(|row| row.1);
+    let is_time = |unit: &TimeUnit| *unit != TimeUnit::Iso && doubtful(title).is_none();
+    if let Some(unit) = TimeUnit::parse(title).filter(is_time) {
+        return (title, Some(Measure::Time(unit)));
+    }
     let whole = Unit::parse(title).filter(|_| title.chars().nth(1).is_some() && doubtful(title).is_none());
     if let Some(unit) = whole {
         return (title, Some(Measure::Value(unit)));
@@ -160,6 +164,9 @@ mod tests {
             ("time (ms)", "time", time(TimeUnit::Millisecond)),
             ("timestamp_ms", "timestamp", time(TimeUnit::Millisecond)),
             ("t_us", "t", time(TimeUnit::Microsecond)),
+            ("Time (min)", "time", time(TimeUnit::Minute)),
+            ("t [h]", "t", time(TimeUnit::Hour)),
+            ("angle_min", "angle min", None),
             ("Time [s]", "time", time(TimeUnit::Second)),
             ("Time_Elapsed(s)", "time elapsed", time(TimeUnit::Second)),
             ("millis", "millis", time(TimeUnit::Millisecond)),

@@ -98,8 +98,22 @@ const NO_INPUT: &str = "none";
 const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
 const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
 const INPUTS: &[&str] = &[
-    "command", "cmd", "u", "input", "voltage", "setpoint", "target", "action", "desired", "soll", "sollwert",
+    "command",
+    "cmd",
+    "u",
+    "input",
+    "voltage",
+    "setpoint",
+    "target",
+    "action",
+    "desired",
+    "soll",
+    "sollwert",
     "current",
+    "drive",
+    "excitation",
+    "exciter",
+    "shaker",
 ];
 /// Words in the names of lengths, for columns without a unit.
 const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];

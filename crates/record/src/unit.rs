@@ -194,6 +194,12 @@ pub enum TimeUnit {
     /// Nanosecond.
     #[serde(rename = "ns")]
     Nanosecond,
+    /// Minute.
+    #[serde(rename = "min")]
+    Minute,
+    /// Hour.
+    #[serde(rename = "h")]
+    Hour,
     /// Dates and times of ISO 8601, or times of day as `HH:MM:SS.mmm`.
     #[serde(rename = "iso")]
     Iso,
@@ -201,7 +207,7 @@ pub enum TimeUnit {
 
 impl TimeUnit {
     /// Names of all units of time in configurations.
-    pub const NAMES: &'static [&'static str] = &["s", "ms", "us", "ns", "iso"];
+    pub const NAMES: &'static [&'static str] = &["s", "ms", "us", "ns", "min", "h", "iso"];
 
     /// Returns the name used in configurations.
     #[must_use]
@@ -211,6 +217,8 @@ impl TimeUnit {
             Self::Millisecond => "ms",
             Self::Microsecond => "us",
             Self::Nanosecond => "ns",
+            Self::Minute => "min",
+            Self::Hour => "h",
             Self::Iso => "iso",
         }
     }
@@ -222,18 +230,10 @@ impl TimeUnit {
             "ms" | "msec" | "msecs" | "millis" | "milliseconds" => Some(Self::Millisecond),
             "us" | "µs" | "μs" | "usec" | "usecs" | "micros" | "microseconds" => Some(Self::Microsecond),
             "ns" | "nsec" | "nsecs" | "nanos" | "nanoseconds" => Some(Self::Nanosecond),
+            "min" | "mins" | "minute" | "minutes" => Some(Self::Minute),
+            "h" | "hr" | "hrs" | "hour" | "hours" => Some(Self::Hour),
             "iso" | "iso8601" | "iso-8601" => Some(Self::Iso),
             _ => None,
-        }
-    }
-
-    /// Returns the number of units in a second.
-    pub(crate) fn per_second(self) -> f64 {
-        match self {
-            Self::Second | Self::Iso => 1.0,
-            Self::Millisecond => 1e3,
-            Self::Microsecond => 1e6,
-            Self::Nanosecond => 1e9,
         }
     }
 
@@ -241,7 +241,14 @@ impl TimeUnit {
     /// would round twice.
     #[must_use]
     pub fn to_seconds(self, stamp: f64) -> f64 {
-        stamp / self.per_second()
+        match self {
+            Self::Second | Self::Iso => stamp,
+            Self::Millisecond => stamp / 1e3,
+            Self::Microsecond => stamp / 1e6,
+            Self::Nanosecond => stamp / 1e9,
+            Self::Minute => stamp * 60.0,
+            Self::Hour => stamp * 3600.0,
+        }
     }
 }
 

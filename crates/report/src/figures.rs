@@ -56,7 +56,7 @@ fn envelope(run: &Run) -> Option<Figure> {
         shaded: vec![],
     };
     let title = "Envelope";
-    let explanation = "Each dot is a peak of the record. On this scale the decay of a single \
+    let explanation = "Each dot is the amplitude at a peak of the record, or in a window of its samples. On this scale the decay of a single \
                        damping ratio is a straight line, and its slope is −λ.";
     let csv = csv(&["time_s", "log_amplitude", "oracle", "estimate"], rows, |r: &EnvelopeRow| {
         numbers(&[r.time_s, r.log_amplitude, r.oracle, r.estimate])

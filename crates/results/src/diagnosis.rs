@@ -231,6 +231,16 @@ pub struct GapSummary {
     pub held_out: String,
 }
 
+impl GapSummary {
+    /// Returns `true` if the gap is large enough beside the noise for its closure to be stated: the 95 % interval is
+    /// narrower than the whole range.
+    #[must_use]
+    pub fn is_closure_told(&self) -> bool {
+        let [low, high] = self.closure.interval_95;
+        high - low < 1.0
+    }
+}
+
 /// Maps of the gap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GapMaps {

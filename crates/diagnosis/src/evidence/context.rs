@@ -21,6 +21,10 @@ use crate::sets::shooting_interval::shortened;
 use crate::settings::Settings;
 use rayon::prelude::*;
 
+/// Ratio of the squared errors without and with a shift of the rest angle below which nobody would see it: a hundredth of
+/// the error. Many samples make smaller ones significant.
+const VISIBLE: f64 = 1.02;
+
 /// Probability of a false alarm at which a shift of the rest angle counts as significant. It is low because
 /// the shift is named as an effect.
 const SHIFTED_BY_CHANCE: f64 = 0.001;
@@ -135,7 +139,8 @@ impl<'a> Context<'a> {
         let others = shifted.hypothesis.calibrated.iter().skip(1).copied().collect::<Vec<_>>();
         let bare =
             if effects.is_empty() && others.is_empty() { self.base.nominal.clone() } else { with(others)? };
-        if !significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE) {
+        let is_seen = bare.squares > VISIBLE * shifted.squares;
+        if !is_seen || !significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE) {
             return None;
         }
         let nominal = &own.nominal;

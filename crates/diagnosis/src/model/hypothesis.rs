@@ -12,6 +12,9 @@ use record::Quantity;
 /// Smallest time constant I/c of the inertia that a fit may reach, in sampling intervals.
 const STIFFEST: f64 = 0.5;
 
+/// Damping ratio from which on a body is well damped.
+const WELL_DAMPED: f64 = 0.2;
+
 /// Number that calibration may move: a nominal coefficient, or a parameter of a known effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Calibrated {
@@ -186,13 +189,17 @@ impl Hypothesis {
         nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
     }
 
-    /// Returns the lower bound of the inertia: one at which the motion follows the torque within a part of a
-    /// sampling interval, so that no sample tells a smaller one apart and the equation of motion is stiff; at most
-    /// a tenth of the nominal inertia, at least a millionth of it, since mistaken units may put it off by a factor
-    /// of a thousand.
+    /// Returns the lower bound of the inertia: a millionth of the nominal one, since mistaken units may put it off by
+    /// a factor of a thousand. For a well-damped body, whose period does not tell its inertia, it is one at which
+    /// the motion follows the torque within a part of a sampling interval, so that no sample tells a smaller one
+    /// apart and the equation of motion is stiff; at most a tenth of the nominal inertia.
     fn least_inertia(&self, facts: &Scales) -> f64 {
-        let unseen = STIFFEST * self.nominal.damping() * facts.interval;
-        unseen.clamp(1e-6 * facts.inertia, 0.1 * facts.inertia)
+        let (damping, least) = (self.nominal.damping(), 1e-6 * facts.inertia);
+        let critical = 2.0 * (self.nominal.stiffness() * self.nominal.inertia()).sqrt();
+        if damping < WELL_DAMPED * critical {
+            return least;
+        }
+        (STIFFEST * damping * facts.interval).clamp(least, 0.1 * facts.inertia)
     }
 
     /// Returns a known effect's parameter with bounds that always include its stated value. The effect is

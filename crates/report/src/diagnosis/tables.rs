@@ -61,16 +61,19 @@ pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
 
 pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
     let gap = &result.gap;
-    let closed = format!(
-        "Closure of the whole gap: {}; of the gap after recalibration: {}. Closure compares squared errors \
-         above the noise floor, so even at 99 % the error can still be several times the noise: see the \
-         column “× noise”.",
-        share_with_interval(&gap.closure),
-        share_with_interval(&gap.closure_of_recalibrated)
-    );
+    let closed = || {
+        format!(
+            "Closure of the whole gap: {}; of the gap after recalibration: {}. Closure compares squared errors \
+             above the noise floor, so even at 99 % the error can still be several times the noise: see the \
+             column “× noise”.",
+            share_with_interval(&gap.closure),
+            share_with_interval(&gap.closure_of_recalibrated)
+        )
+    };
     let mut notes = match result.verdict.status {
         VerdictStatus::None => vec!["There is no gap to close.".to_owned()],
-        _ => vec![closed],
+        _ if gap.is_closure_told() => vec![closed()],
+        _ => vec!["The gap is too small compared with the noise to state its closure.".to_owned()],
     };
     let [recalibrated, repaired] = gap.last_third;
     if recalibrated.is_finite() && repaired.is_finite() {

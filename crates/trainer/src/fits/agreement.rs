@@ -62,7 +62,11 @@ fn answer(row: &PipelineRow) -> Option<Answer<'_>> {
 }
 
 fn name(row: &PipelineRow) -> String {
-    let whose = if row.pipeline == "paper" { "the paper’s way" } else { "the recommended way" };
+    let whose = match row.pipeline.as_str() {
+        "paper" => "the paper’s way",
+        "samples" => "windows of the samples",
+        _ => "the recommended way",
+    };
     format!("{whose} on {}", times(&row.clock))
 }
 

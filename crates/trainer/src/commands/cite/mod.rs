@@ -157,6 +157,7 @@ mod tests {
     fn plain(text: &str) -> String {
         let text = text
             .replace("{\\AA}", "A")
+            .replace('Å', "A")
             .replace("{\\L}", "L")
             .replace("\\v s", "s")
             .replace(['ö', 'ü', 'é', 'ć', 'á'], "?");

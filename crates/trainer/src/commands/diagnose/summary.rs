@@ -78,7 +78,7 @@ fn gap(result: &DiagnosisResult) -> String {
     let closed = |of: &WithInterval| format!("closes {}", share_with_interval(of));
     let same = gap.repaired == gap.recalibrated;
     let nothing = result.verdict.status == VerdictStatus::None;
-    let [low, high] = gap.closure.interval_95;
+    let is_told = gap.is_closure_told();
     let mut rows = vec![
         row("simulator as given", gap.nominal, String::new()),
         row("recalibrated", gap.recalibrated, String::new()),
@@ -87,7 +87,7 @@ fn gap(result: &DiagnosisResult) -> String {
             gap.repaired,
             if nothing {
                 "there is no gap to close".to_owned()
-            } else if high - low >= 1.0 {
+            } else if !is_told {
                 "the gap is too small compared with the noise to state its closure".to_owned()
             } else {
                 format!("{} of the whole gap", closed(&gap.closure))
@@ -97,7 +97,7 @@ fn gap(result: &DiagnosisResult) -> String {
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
     if let Some(note) =
-        rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same && !nothing && high - low < 1.0)
+        rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same && !nothing && is_told)
     {
         note.push_str(&format!(
             ", {} of the gap after recalibration",

@@ -408,7 +408,7 @@ impl Found {
             ),
             None => Some(
                 "no oscillation: the record comes to rest without a swing, as an overdamped or critically damped system \
-                 does, or it drifts, or is sampled less than five times in a cycle; neither a frequency nor a damping ratio \
+                 does, or it drifts, or is sampled less than two and a half times in a cycle; neither a frequency nor a damping ratio \
                  can be read from it"
                     .to_owned(),
             ),
