@@ -20,7 +20,7 @@ fn layer(name: &str) -> Option<u8> {
         "registry" => 5,
         "report" | "trials" | "tracking" | "experiment" => 6,
         "studies" | "workflow" => 7,
-        "ringdown-lab" | "trainer" => 8,
+        "ringdown-lab" | "trainer" | "web" => 8,
         "ringdown-python" => 9,
         _ => return None,
     })
@@ -140,6 +140,7 @@ fn only_who_makes_or_scores_records_reaches_the_truth() {
             "ringdown-lab",
             "trainer",
             "ringdown-python",
+            "web",
         ]
         .contains(&package.as_str());
         assert!(may, "{package} reaches the truth");
