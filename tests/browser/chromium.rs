@@ -4,7 +4,7 @@
 use report::plot::Hue;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -156,6 +156,8 @@ impl Chromium {
     pub(crate) fn choose(&mut self, selector: &str, files: &[&Path]) {
         let asked = json!({ "expression": format!("document.querySelector({selector:?})") });
         let found = self.call("Runtime.evaluate", asked);
+        // The browser reads no file whose path goes up.
+        let files: Vec<PathBuf> = files.iter().map(|file| file.canonicalize().unwrap()).collect();
         self.call(
             "DOM.setFileInputFiles",
             json!({ "files": files, "objectId": found["result"]["objectId"] }),
