@@ -29,6 +29,11 @@ const take = async (files) => {
   const given = [...files];
   const simulator = given.find((file) => /\.toml$/i.test(file.name));
   const dropped = given.filter((file) => file !== simulator);
+  const robot = dropped.find((file) => /\.urdf$/i.test(file.name));
+  if (robot) {
+    return say(`${robot.name} is a robot of several joints, which the page does not diagnose. The program does: ` +
+      `trainer diagnose LOG --nominal ${robot.name}`);
+  }
   const large = dropped.find((file) => file.size > LARGEST_MB * 2 ** 20);
   if (large) {
     hide("log", "simulator", "answer");
@@ -93,6 +98,7 @@ const diagnose = async () => {
     const request = { do: "diagnose", reading: options(), nominal_name: nominal.name, nominal: nominal.text, name: logs[0].name };
     answered(await engine.ask(request, (stage) => progress.begin(stage)), logs, options());
     say("The diagnosis is below.");
+    $("answer-title").scrollIntoView();
   } catch (error) {
     if (error instanceof Cancelled) say("Cancelled.");
     else refuse(error.message);

@@ -1,7 +1,7 @@
 //! The diagnosis of the dropped logs.
 
+use crate::host::{Answered, Host};
 use crate::reading::reading;
-use crate::session::{Answered, Host};
 use diagnosis::Settings;
 use report::RunTexts;
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! Estimates of the decay of the dropped logs by least squares and the other methods that need no network.
 
+use crate::host::Answered;
 use crate::reading::{experiment, reading};
-use crate::session::Answered;
 use oracle::classical::{CLASSICAL, ClassicalRoute};
 use results::{PipelineOutcome, PipelineRow};
 use seed::Seed;

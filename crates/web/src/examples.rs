@@ -1,6 +1,6 @@
 //! Examples ready to click: the shipped record, and records simulated in the page with an effect of a chosen size.
 
-use crate::session::Answered;
+use crate::host::Answered;
 use dynamics::{Coordinate, Effect, Units};
 use serde::Deserialize;
 use serde_json::{Value, json};

@@ -11,6 +11,7 @@ mod boundary;
 mod diagnose;
 mod estimate;
 mod examples;
+mod host;
 mod looked;
 mod picture;
 mod reading;
@@ -19,4 +20,5 @@ mod session;
 #[cfg(test)]
 mod tests;
 
-pub use session::{Host, Session};
+pub use host::Host;
+pub use session::Session;

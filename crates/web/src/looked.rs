@@ -1,8 +1,8 @@
 //! First look at the dropped logs.
 
+use crate::host::Answered;
 use crate::picture::picture;
 use crate::reading::reading;
-use crate::session::Answered;
 use report::format::with_uncertainty;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};

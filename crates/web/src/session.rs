@@ -3,19 +3,12 @@
 use crate::diagnose::{DiagnoseRequest, diagnose};
 use crate::estimate::{EstimateRequest, estimated};
 use crate::examples::{ExampleRequest, examples, simulated};
+use crate::host::Host;
 use crate::looked::{LookRequest, looked};
 use crate::reading::offered;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::json;
 use workflow::Log;
-
-/// What the page lends to a session.
-pub trait Host {
-    /// Returns the seconds since some moment.
-    fn seconds(&self) -> f64;
-    /// Tells the stage of the work that begins, in words.
-    fn stage(&self, text: &str);
-}
 
 /// The dropped files.
 #[derive(Debug, Default)]
@@ -64,6 +57,3 @@ impl Session {
         answer.unwrap_or_else(|error| json!({ "error": error })).to_string()
     }
 }
-
-/// Answer to a request, or a message.
-pub(crate) type Answered = Result<Value, String>;

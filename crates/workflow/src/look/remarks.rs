@@ -1,15 +1,11 @@
 //! Remarks on what a log shows, in sentences.
 
-use super::{CRITICAL, Looked};
+use super::looked::{CRITICAL, FEW_CYCLES, Looked};
 use identify::{Mode, regular_part};
 
 /// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
 /// records of noise, white or red, have 4 to 15 % or no frequency.
 const HARDLY_KNOWN: f64 = 0.03;
-
-/// Number of cycles below which a record says little about a decay: a diagnosis needs segments of them to
-/// hold out.
-pub(super) const FEW_CYCLES: f64 = 3.0;
 
 /// Returns a remark on the modes of a record that has several.
 fn several(modes: &[Mode]) -> Option<String> {
