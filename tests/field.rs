@@ -8,11 +8,11 @@ use std::path::PathBuf;
 
 /// Log with the options a user gives, and the frequency in hertz and damping ratio that it has, each with the
 /// largest relative deviation.
-type Log = (&'static str, &'static [&'static str], [f64; 2], [f64; 2]);
+pub(crate) type Log = (&'static str, &'static [&'static str], [f64; 2], [f64; 2]);
 
 /// Published or made values, from the notes beside the logs; least squares on the samples where those state
 /// none.
-const LOGS: &[Log] = &[
+pub(crate) const LOGS: &[Log] = &[
     ("tracker-xy/tracker.txt", &[], [0.413, 0.01], [0.0023, 0.3]),
     ("phyphox-gyro-axis/Raw Data.csv", &[], [0.773, 0.01], [0.0083, 0.4]),
     ("handled-start-and-stop/gyro.csv", &[], [0.773, 0.01], [0.0083, 0.4]),
@@ -48,7 +48,7 @@ const LOGS: &[Log] = &[
     ("differenced-encoder-velocity/velocity.csv", &[], [1.2, 2e-3], [0.02, 0.1]),
 ];
 
-fn field(name: &str) -> Option<PathBuf> {
+pub(crate) fn field(name: &str) -> Option<PathBuf> {
     let path = root().join("../shared/field").join(name);
     if !path.exists() {
         let line = format!("SKIPPED: the log {} is not there\n", path.display());
@@ -59,7 +59,7 @@ fn field(name: &str) -> Option<PathBuf> {
 }
 
 /// Looks at a log; returns the answer, or the message of a refusal.
-fn look(path: &std::path::Path, options: &[&str]) -> Result<Value, String> {
+pub(crate) fn look(path: &std::path::Path, options: &[&str]) -> Result<Value, String> {
     let scratch = tempfile::tempdir().unwrap();
     look_into(&scratch.path().join("out"), path, options)
 }

@@ -36,6 +36,7 @@ mod measured_records;
 mod modules;
 mod nist;
 mod nominal;
+mod page;
 mod prediction;
 mod reading;
 mod recipe;

@@ -196,7 +196,7 @@ fn what_the_reader_found_reads_the_file_again() {
     let (_, text, _, _) = files().swap_remove(1);
     let path = write(scratch.path(), "log.csv", &text);
     let options = record::ReadOptions::default();
-    let found = record::look(Path::new(&path), &options).unwrap();
+    let found = record::look(&path, &std::fs::read(&path).unwrap(), &options).unwrap();
     let keys: Vec<String> =
         found.source.reading.options().iter().map(|(key, value)| format!("data.{key}={value}")).collect();
     let out = [scratch.path().join("one"), scratch.path().join("other")]

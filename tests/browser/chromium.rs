@@ -4,8 +4,9 @@
 use report::plot::Hue;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 const NAMES: &[&str] = &["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -18,15 +19,15 @@ const AUDIT: &str = include_str!("audit.js");
 
 /// Viewport and color scheme of a page.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View {
+pub(crate) struct View {
     /// Width in CSS pixels.
-    pub(super) width: u32,
+    pub(crate) width: u32,
     /// Color scheme, `light` or `dark`.
-    pub(super) scheme: &'static str,
+    pub(crate) scheme: &'static str,
 }
 
 /// Views of a phone and a desktop, each in light and dark.
-pub(super) const VIEWS: [View; 4] = [
+pub(crate) const VIEWS: [View; 4] = [
     View { width: 390, scheme: "light" },
     View { width: 390, scheme: "dark" },
     View { width: 1440, scheme: "light" },
@@ -34,7 +35,7 @@ pub(super) const VIEWS: [View; 4] = [
 ];
 
 /// Browser with one page.
-pub(super) struct Chromium {
+pub(crate) struct Chromium {
     child: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -48,7 +49,7 @@ pub(super) struct Chromium {
 
 impl Chromium {
     /// Starts a browser. `None`, with a notice, if there is none.
-    pub(super) fn start() -> Option<Self> {
+    pub(crate) fn start() -> Option<Self> {
         let is_there = |name: &&&str| {
             let asked = "command -v timeout && command -v \"$0\"";
             let answer = Command::new("sh").args(["-c", asked, name]).output();
@@ -91,32 +92,93 @@ impl Chromium {
     }
 
     /// Opens a page and returns its faults: console messages, network requests, and visible faults.
-    pub(super) fn faults(&mut self, page: &Path, view: View) -> Vec<String> {
+    pub(crate) fn faults(&mut self, page: &Path, view: View) -> Vec<String> {
         self.open(page, view);
-        let decoration = [Hue::Grid.light(), Hue::Shade.light()];
-        let given = json!({ "width": view.width, "scripts": self.runs_scripts, "decoration": decoration });
-        let seen = self.evaluate(&format!("({AUDIT})({given})"));
-        let mut faults: Vec<String> = self.events.iter().filter_map(|event| said(event, page)).collect();
-        faults.extend(seen.as_array().unwrap().iter().map(|fault| fault.as_str().unwrap().to_owned()));
+        let seen = self.visible_faults(view);
+        let mut faults = self.said(&address(page));
+        faults.extend(seen);
         faults
     }
 
+    /// Returns console messages and requests since the page at this address was opened; those of its own are none.
+    pub(crate) fn said(&self, own: &str) -> Vec<String> {
+        self.events.iter().filter_map(|event| said(event, own)).collect()
+    }
+
+    /// Forgets what was said and requested so far.
+    pub(crate) fn forget(&mut self) {
+        self.events.clear();
+    }
+
+    /// Returns the visible faults of the page as it is displayed now.
+    pub(crate) fn visible_faults(&mut self, view: View) -> Vec<String> {
+        let decoration = [Hue::Grid.light(), Hue::Shade.light()];
+        let given = json!({ "width": view.width, "scripts": self.runs_scripts, "decoration": decoration });
+        let seen = self.evaluate(&format!("({AUDIT})({given})"));
+        seen.as_array().unwrap().iter().map(|fault| fault.as_str().unwrap().to_owned()).collect()
+    }
+
     /// Opens a page and waits until it is loaded.
-    pub(super) fn open(&mut self, page: &Path, view: View) {
+    pub(crate) fn open(&mut self, page: &Path, view: View) {
+        self.visit(&address(page), view);
+    }
+
+    /// Opens the page at an address and waits until it is loaded.
+    pub(crate) fn visit(&mut self, url: &str, view: View) {
+        self.set_view(view);
+        self.events.clear();
+        let opened = self.call("Page.navigate", json!({ "url": url }));
+        assert!(opened.get("errorText").is_none(), "{url}: {opened}");
+        self.wait_for("Page.loadEventFired");
+    }
+
+    /// Sets viewport and color scheme.
+    pub(crate) fn set_view(&mut self, view: View) {
         self.call(
             "Emulation.setDeviceMetricsOverride",
             json!({ "width": view.width, "height": 900, "deviceScaleFactor": 1, "mobile": view.width < 600 }),
         );
         let scheme = json!([{ "name": "prefers-color-scheme", "value": view.scheme }]);
         self.call("Emulation.setEmulatedMedia", json!({ "features": scheme }));
-        self.events.clear();
-        let opened = self.call("Page.navigate", json!({ "url": address(page) }));
-        assert!(opened.get("errorText").is_none(), "{}: {opened}", page.display());
-        self.wait_for("Page.loadEventFired");
+    }
+
+    /// Waits until an expression is true, and returns the seconds that this took.
+    pub(crate) fn wait_until(&mut self, expression: &str, most: Duration) -> f64 {
+        let start = Instant::now();
+        while self.evaluate(expression) != true {
+            assert!(start.elapsed() < most, "after {most:?}, this is not true: {expression}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        start.elapsed().as_secs_f64()
+    }
+
+    /// Chooses files in an element for files, which a selector names.
+    pub(crate) fn choose(&mut self, selector: &str, files: &[&Path]) {
+        let asked = json!({ "expression": format!("document.querySelector({selector:?})") });
+        let found = self.call("Runtime.evaluate", asked);
+        // The browser reads no file whose path goes up.
+        let files: Vec<PathBuf> = files.iter().map(|file| file.canonicalize().unwrap()).collect();
+        self.call(
+            "DOM.setFileInputFiles",
+            json!({ "files": files, "objectId": found["result"]["objectId"] }),
+        );
+    }
+
+    /// Returns the elements that can be operated and have no name for a screen reader.
+    pub(crate) fn nameless(&mut self) -> Vec<String> {
+        const OPERATED: [&str; 8] =
+            ["button", "textbox", "combobox", "slider", "checkbox", "radio", "Iframe", "spinbutton"];
+        let tree = self.call("Accessibility.getFullAXTree", json!({}));
+        let nodes = tree["nodes"].as_array().unwrap().iter();
+        let is_nameless = |node: &&Value| {
+            let role = node["role"]["value"].as_str().unwrap_or_default();
+            OPERATED.contains(&role) && node["name"]["value"].as_str().unwrap_or_default().trim().is_empty()
+        };
+        nodes.filter(is_nameless).map(|node| node["role"]["value"].to_string()).collect()
     }
 
     /// Returns the value of an expression; a promise is awaited.
-    pub(super) fn evaluate(&mut self, expression: &str) -> Value {
+    pub(crate) fn evaluate(&mut self, expression: &str) -> Value {
         let asked = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
         let answer = self.call("Runtime.evaluate", asked);
         assert!(answer.get("exceptionDetails").is_none(), "{answer}");
@@ -124,7 +186,7 @@ impl Chromium {
     }
 
     /// Enables or disables the scripts of pages that are opened later.
-    pub(super) fn run_scripts(&mut self, runs: bool) {
+    pub(crate) fn run_scripts(&mut self, runs: bool) {
         self.call("Emulation.setScriptExecutionDisabled", json!({ "value": !runs }));
         self.runs_scripts = runs;
     }
@@ -132,7 +194,7 @@ impl Chromium {
     /// Sends a mouse event at a position in the window, in CSS pixels: `mouseMoved`, `mousePressed` or
     /// `mouseReleased`. `clicks` is 2 for the second click of a double click, and 0 while no button is
     /// pressed.
-    pub(super) fn mouse(&mut self, kind: &str, at: [f64; 2], clicks: u32) {
+    pub(crate) fn mouse(&mut self, kind: &str, at: [f64; 2], clicks: u32) {
         let held = u32::from(kind != "mouseReleased");
         let button = if kind == "mouseMoved" && clicks == 0 { "none" } else { "left" };
         self.call(
@@ -143,7 +205,7 @@ impl Chromium {
     }
 
     /// Presses and releases a key.
-    pub(super) fn press(&mut self, key: &str) {
+    pub(crate) fn press(&mut self, key: &str) {
         let text = if key == "Enter" { "\r" } else { key };
         self.call(
             "Input.dispatchKeyEvent",
@@ -154,13 +216,13 @@ impl Chromium {
     }
 
     /// Sets the folder for files that a page's buttons save.
-    pub(super) fn download_to(&mut self, folder: &Path) {
+    pub(crate) fn download_to(&mut self, folder: &Path) {
         let asked = json!({ "behavior": "allow", "downloadPath": folder, "eventsEnabled": true });
         self.call("Browser.setDownloadBehavior", asked);
     }
 
     /// Waits until a download is complete.
-    pub(super) fn wait_for_download(&mut self) {
+    pub(crate) fn wait_for_download(&mut self) {
         loop {
             let event = self.wait_for("Browser.downloadProgress");
             match event["params"]["state"].as_str() {
@@ -229,7 +291,7 @@ fn address(page: &Path) -> String {
 }
 
 /// Returns the fault of a page that an event reports; `None` if it reports none.
-fn said(event: &Value, page: &Path) -> Option<String> {
+fn said(event: &Value, own: &str) -> Option<String> {
     let params = &event["params"];
     match event["method"].as_str()? {
         "Runtime.exceptionThrown" => Some(format!("console: {}", params["exceptionDetails"])),
@@ -238,7 +300,7 @@ fn said(event: &Value, page: &Path) -> Option<String> {
         "Network.requestWillBeSent" => {
             let url = params["request"]["url"].as_str()?;
             let inside = ["data:", "blob:"].iter().any(|scheme| url.starts_with(scheme));
-            (url != address(page) && !inside).then(|| format!("request: {url}"))
+            (url != own && !inside).then(|| format!("request: {url}"))
         }
         _ => None,
     }

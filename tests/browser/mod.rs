@@ -2,7 +2,7 @@
 //! illegible, on a phone and on a desktop, in light and in dark. Skipped with a notice if there is no
 //! Chromium.
 
-mod chromium;
+pub(crate) mod chromium;
 mod instruments;
 
 use crate::support::{measured, root, simulated, trainer};

@@ -8,11 +8,13 @@
 mod actuator;
 mod experiment;
 mod json_schema;
+#[cfg(not(target_arch = "wasm32"))]
 mod learning;
 mod nominal;
 mod pipelines;
 mod prediction;
 mod schema;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod sweep;
 
 #[cfg(test)]
@@ -23,6 +25,7 @@ pub use experiment::{
     CheckpointSettings, Claims, Comparison, DataSettings, Experiment, FitSettings, Single, Task, resolve,
 };
 pub use json_schema::{compare_schema, estimate_schema, predict_schema};
+#[cfg(not(target_arch = "wasm32"))]
 pub use learning::{
     LearnSettings, LearnSource, LearnStudy, LearningProblem, is_learning, learn_schema, resolve_learning,
 };

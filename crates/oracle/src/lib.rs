@@ -15,12 +15,14 @@ mod curvature;
 mod decay;
 mod double_double;
 mod error;
+#[cfg(not(target_arch = "wasm32"))]
 mod library;
 
 pub use certified::{Intercept, LinearFit, least_squares};
 pub use curvature::{Curvature, curvature};
 pub use decay::{DecayFit, decay_rate};
 pub use error::OracleError;
+#[cfg(not(target_arch = "wasm32"))]
 pub use library::linfa_decay_rate;
 
 /// Fewest significant digits that an answer must have.

@@ -2,12 +2,11 @@
 
 use crate::clock::{Clock, ClockChoice};
 use crate::error::RecordError;
-use crate::file::{Source, bytes_of, read_text, table_text};
+use crate::file::{Source, read_text, table_text};
 use crate::options::ReadOptions;
 use crate::record::Record;
 use crate::roles::Kind;
 use crate::table::Table;
-use std::path::Path;
 
 /// Findings about a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,16 +37,14 @@ pub struct ColumnLook {
     pub because: Option<String>,
 }
 
-/// Reads a file and reports the findings.
+/// Reads a record from the bytes of a file and reports the findings; `name` is its name in messages.
 ///
 /// # Errors
-/// As [`crate::read_file`]. If the file is not clear enough, the message names the option to set.
-pub fn look(path: &Path, options: &ReadOptions) -> Result<Look, RecordError> {
-    let name = path.display().to_string();
-    let bytes = bytes_of(path)?;
-    let (record, source) = read_text(&name, &bytes, options)?;
-    let clock = Clock::new(&record, ClockChoice::Auto).map_err(|fault| fault.in_file(&name))?;
-    let (text, _) = table_text(&bytes).map_err(|fault| fault.in_file(&name))?;
+/// As [`crate::read_text`]. If the file is not clear enough, the message names the option to set.
+pub fn look(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Look, RecordError> {
+    let (record, source) = read_text(name, bytes, options)?;
+    let clock = Clock::new(&record, ClockChoice::Auto).map_err(|fault| fault.in_file(name))?;
+    let (text, _) = table_text(bytes).map_err(|fault| fault.in_file(name))?;
     let columns = match source.reading.format.as_str() {
         "csv" => columns(text.trim_start_matches('\u{feff}'), &source),
         _ => Vec::new(),

@@ -60,6 +60,7 @@ pub use run_table::{
     csv as run_table_csv, latex as run_table_latex, markdown as run_table_markdown,
     text_cells as run_table_text,
 };
+pub use scripts::policy as script_policy;
 pub use texts::RunTexts;
 pub use trials::class_rows;
 pub use verdict::in_a_sentence;

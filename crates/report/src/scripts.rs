@@ -20,8 +20,9 @@ pub(crate) const SCRIPTS: [&str; 2] = [
 /// Style sheet of uPlot.
 pub(crate) const STYLE: &str = include_str!("../assets/uPlot.min.css");
 
-/// Returns the script sources that the content security policy allows.
-pub(crate) fn policy() -> String {
+/// Returns the script sources that the content security policy of a page allows.
+#[must_use]
+pub fn policy() -> String {
     let source = |script: &&str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(script.as_bytes())));
     SCRIPTS.iter().map(source).collect::<Vec<_>>().join(" ")
 }

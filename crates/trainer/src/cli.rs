@@ -10,6 +10,7 @@ use crate::commands::list::Listing;
 use crate::commands::new::NewArguments;
 use crate::commands::predict::PredictArguments;
 use crate::commands::schema::Purpose;
+use crate::commands::serve::ServeArguments;
 use crate::commands::sweep::arguments::SweepArguments;
 use crate::commands::trials::arguments::TrialsArguments;
 use crate::configured::ConfigArguments;
@@ -51,6 +52,7 @@ Examples:
   trainer list effects
   trainer list runs                               what lies below reports/runs
   trainer report reports/runs/RUN
+  trainer serve                                   the page on which a log is dropped
   trainer verify reports/runs/RUN                 runs it again: identical, or where it differs
   trainer cite reports/runs/RUN                   the literature that it follows, as BibTeX
   trainer export reports/runs/RUN --to tensorboard,mlflow
@@ -113,6 +115,8 @@ pub(crate) enum Command {
         #[arg(value_enum)]
         purpose: Option<Purpose>,
     },
+    /// Offers the page on which a log is dropped, on this computer alone
+    Serve(ServeArguments),
     /// Simulates records of systems drawn from priors; their true parameters are sealed in a separate folder
     Simulate(ExperimentArguments),
     /// Runs every combination of some keys' values, in parallel; resumable

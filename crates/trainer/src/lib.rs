@@ -30,7 +30,7 @@ use clap::{CommandFactory, FromArgMatches};
 use cli::{Arguments, Command};
 use commands::{
     check, cite, compare, diagnose, explain, export, init, list, manual, new, predict, report, run, schema,
-    simulate, sweep, trials, verify,
+    serve, simulate, sweep, trials, verify,
 };
 use error::TrainerError;
 use outcome::Outcome;
@@ -100,6 +100,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Init(arguments)) => init::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
+        Some(Command::Serve(arguments)) => serve::command(&arguments),
         Some(Command::New(arguments)) => new::command(&arguments),
         Some(Command::Predict(arguments)) => predict::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),

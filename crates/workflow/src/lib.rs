@@ -19,9 +19,12 @@
 
 mod actuator;
 mod error;
+pub mod estimate;
 pub mod guess;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod learning;
 mod logs;
+pub mod look;
 mod modes;
 pub mod nominal;
 mod question;
@@ -31,8 +34,8 @@ mod result;
 pub mod robot;
 
 pub use error::{WorkflowError, in_options};
-pub use logs::{is_log, is_run, left_out, logs};
+pub use logs::{Log, is_log, is_run, left_out, logs};
 pub use modes::{mode_rows, modes, resonance};
-pub use question::{Answer, Question};
+pub use question::{Answer, Question, after};
 pub use read::{Given, Loaded, Reading};
 pub use result::{series_rows, title};

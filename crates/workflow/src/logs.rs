@@ -1,7 +1,40 @@
 //! Record files in a folder.
 
 use crate::error::WorkflowError;
+use record::Fault;
 use std::path::{Path, PathBuf};
+
+/// Log in memory.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Log {
+    /// Name in messages and results.
+    pub name: String,
+    /// Bytes of the file.
+    pub bytes: Vec<u8>,
+    /// Remark on the folder of the log; only the first log of a folder has one.
+    pub note: Option<String>,
+}
+
+impl Log {
+    /// Reads the [`logs`] at a path.
+    ///
+    /// # Errors
+    /// Those of [`logs`], and [`WorkflowError::Record`] for a file that cannot be read.
+    pub fn read(path: &Path) -> Result<Vec<Self>, WorkflowError> {
+        let read = |path: &PathBuf| {
+            let name = path.display().to_string();
+            let bytes = std::fs::read(path).map_err(|error| {
+                WorkflowError::Record(Fault::Unreadable { problem: error.to_string() }.in_file(&name))
+            })?;
+            Ok(Self { name, bytes, note: None })
+        };
+        let mut found = logs(path)?.iter().map(read).collect::<Result<Vec<_>, WorkflowError>>()?;
+        if let Some(first) = found.first_mut() {
+            first.note = left_out(path);
+        }
+        Ok(found)
+    }
+}
 
 /// Extensions of files that hold samples.
 const TABLES: &[&str] = &["csv", "tsv", "lvm", "npy", "npz", "mat", "wav"];

@@ -1,15 +1,16 @@
 //! Diagnosis question (records of one system and its nominal simulator) and its answer.
 
 use crate::error::WorkflowError;
-use crate::logs::{left_out, logs};
+use crate::logs::Log;
 use crate::nominal;
 use crate::read::{Given, Loaded, Reading};
 use crate::repair::repaired;
-use crate::result::{Beside, result};
+use crate::result::{Beside, result, series_rows};
 use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
 use experiment::StatedNominal;
 use export::Repaired;
 use results::DiagnosisResult;
+use runs::{RunError, to_csv, to_json};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -34,6 +35,23 @@ pub struct Answer {
     pub result: DiagnosisResult,
 }
 
+impl Answer {
+    /// Returns the files of the answer with their names: `diagnosis.json`, `series.csv`, and the repaired simulator in every
+    /// form.
+    ///
+    /// # Errors
+    /// [`RunError::Encoding`], never in practice: the answer has no value that JSON or CSV cannot hold.
+    pub fn files(&self) -> Result<Vec<(&'static str, String)>, RunError> {
+        let series = to_csv("series.csv", &series_rows(&self.found.series))?;
+        let mut files = vec![
+            ("diagnosis.json", to_json("diagnosis.json", &self.result)?),
+            ("series.csv", String::from_utf8_lossy(&series).into_owned()),
+        ];
+        files.extend(export::files(&self.repaired));
+        Ok(files)
+    }
+}
+
 /// Cycles of the nominal simulator from which another free swing of a file is a record of its own.
 const CYCLES: f64 = 6.0;
 
@@ -51,14 +69,13 @@ const DRIVES: f64 = 10.0;
 
 /// Returns the gain of an input that a simulator does not state and a record follows, with a sentence; `None` if the
 /// reading names an input or none, or if the record follows none.
-fn gain_of(record: &Path, stated: &StatedNominal, reading: &Reading) -> Option<(f64, String)> {
+fn gain_of(log: &Log, stated: &StatedNominal, reading: &Reading) -> Option<(f64, String)> {
     if reading.options.columns.input.is_some() && stated.actuator.is_none() {
         return None;
     }
-    let log = logs(record).ok()?.into_iter().next()?;
     let mut reading = reading.clone().for_nominal(stated);
     reading.options.driven = true;
-    let loaded = Loaded::read(&log, &reading).ok()?;
+    let loaded = Loaded::parse(&log.name, &log.bytes, &reading).ok()?;
     loaded.record.input()?;
     let oscillator = identify::identify(&loaded.record, &loaded.believed().ok()?).ok()?;
     let gain = oscillator.input_gain.filter(|gain| gain.value.abs() > DRIVES * gain.std_error)?;
@@ -80,6 +97,27 @@ fn gain_of(record: &Path, stated: &StatedNominal, reading: &Reading) -> Option<(
              --input none"
         ),
     ))
+}
+
+/// Returns a simulator with the gain of an input that drives the first log, with a sentence, if it states none.
+fn with_gain(
+    first: Option<&Log>,
+    stated: StatedNominal,
+    nominal: &str,
+    reading: &Reading,
+) -> Result<(StatedNominal, Option<String>), WorkflowError> {
+    let Some(first) = first.filter(|_| !stated.driven) else { return Ok((stated, None)) };
+    match gain_of(first, &stated, reading) {
+        Some((gain, finding)) => {
+            let refused = |error: dynamics::DynamicsError| WorkflowError::Nominal {
+                file: nominal.to_owned(),
+                problem: error.to_string(),
+            };
+            Ok((stated.driven_by(gain).map_err(refused)?, Some(finding)))
+        }
+        None if stated.actuator.is_some() => Err(WorkflowError::UnknownGain { file: first.name.clone() }),
+        None => Ok((stated, None)),
+    }
 }
 
 /// Returns a reading that takes the columns of a record that was read, for the other records of the system.
@@ -153,56 +191,51 @@ impl Question {
         nominal: &Path,
         reading: &Reading,
     ) -> Result<Self, WorkflowError> {
-        let gain = match records.first() {
-            Some(first) if !stated.driven => gain_of(first, &stated, reading),
-            _ => None,
-        };
-        if let (Some(_), false, None, Some(first)) = (&stated.actuator, stated.driven, &gain, records.first())
-        {
-            return Err(WorkflowError::UnknownGain { file: first.display().to_string() });
-        }
-        let stated = match &gain {
-            Some((gain, _)) => stated.driven_by(*gain).map_err(|error| WorkflowError::Nominal {
-                file: nominal.display().to_string(),
-                problem: error.to_string(),
-            })?,
-            None => stated,
-        };
+        let logs: Vec<Vec<Log>> = records.iter().map(|path| Log::read(path)).collect::<Result<_, _>>()?;
+        Self::of_logs(&logs.concat(), stated, nominal.display().to_string(), reading)
+    }
+
+    /// Reads records from logs in memory, for a nominal simulator whose file is called `nominal`.
+    ///
+    /// # Errors
+    /// [`WorkflowError`] with the file, the place in it and the option to set.
+    pub fn of_logs(
+        logs: &[Log],
+        stated: StatedNominal,
+        nominal: String,
+        reading: &Reading,
+    ) -> Result<Self, WorkflowError> {
+        let (stated, gain) = with_gain(logs.first(), stated, &nominal, reading)?;
         let reading = reading.clone().for_nominal(&stated);
-        let mut given = Vec::new();
+        let mut given: Vec<Given> = Vec::new();
         let (mut columns, mut still): (Option<Reading>, Vec<String>) = (None, Vec::new());
-        for path in records {
-            let start = given.len();
-            for log in logs(path)? {
-                let alike = columns.as_ref().and_then(|alike| Loaded::read(&log, alike).ok());
-                let loaded = alike.map_or_else(|| Loaded::read(&log, &reading), Ok)?;
-                columns.get_or_insert_with(|| alike_to(&loaded, &reading));
-                if is_still(&loaded) {
-                    still.push(log.display().to_string());
-                    continue;
-                }
-                let others = other_swings(&loaded, &stated);
-                given.push(loaded.given(&stated)?);
-                for [from_s, to_s] in others {
-                    let mut reading = reading.clone();
-                    (reading.options.from_s, reading.options.to_s) = (Some(from_s), Some(to_s));
-                    given.push(Loaded::read(&log, &reading)?.given(&stated)?);
-                }
+        let mut note = None;
+        for log in logs {
+            note = log.note.clone().or(note);
+            let read = |reading: &Reading| Loaded::parse(&log.name, &log.bytes, reading);
+            let alike = columns.as_ref().and_then(|alike| read(alike).ok());
+            let loaded = alike.map_or_else(|| read(&reading), Ok)?;
+            columns.get_or_insert_with(|| alike_to(&loaded, &reading));
+            if is_still(&loaded) {
+                still.push(log.name.clone());
+                continue;
             }
-            // A folder's note is one of its first record.
-            given
-                .get_mut(start)
-                .into_iter()
-                .for_each(|first: &mut Given| first.row.findings.extend(left_out(path)));
+            let mut first = loaded.given(&stated)?;
+            first.row.findings.extend(note.take());
+            given.push(first);
+            for [from_s, to_s] in other_swings(&loaded, &stated) {
+                let mut reading = reading.clone();
+                (reading.options.from_s, reading.options.to_s) = (Some(from_s), Some(to_s));
+                given.push(read(&reading)?.given(&stated)?);
+            }
         }
         if let (true, Some(file)) = (given.is_empty(), still.first()) {
             return Err(WorkflowError::StandsStill { file: file.clone() });
         }
         if let Some(first) = given.first_mut() {
-            let gain = gain.into_iter().map(|(_, finding)| finding);
-            first.row.findings.extend(gain.chain(still.iter().map(|file| left_out_still(file))));
+            first.row.findings.extend(gain.into_iter().chain(still.iter().map(|file| left_out_still(file))));
         }
-        Self::new(given, stated, nominal.display().to_string())
+        Self::new(given, stated, nominal)
     }
 
     /// Returns the digests of the records, separated by spaces.
@@ -217,7 +250,7 @@ impl Question {
     /// # Errors
     /// Those with which a diagnosis refuses its records.
     pub fn check(&self) -> Result<(), WorkflowError> {
-        match self.answer_watched(&Settings::default(), 0, &|_| false) {
+        match self.answer_timed(&Settings::default(), 0, &|| 0.0, &|_| false) {
             Err(WorkflowError::Diagnosis { source: DiagnosisError::Interrupted { .. }, .. }) | Ok(_) => {
                 Ok(())
             }
@@ -246,9 +279,25 @@ impl Question {
         goes_on: &dyn Fn(&'static str) -> bool,
     ) -> Result<Answer, WorkflowError> {
         let start = Instant::now();
+        self.answer_timed(settings, seed, &|| start.elapsed().as_secs_f64(), goes_on)
+    }
+
+    /// Computes the diagnosis as [`Question::answer_watched`] does, with the time from the caller: `stopwatch` returns the
+    /// seconds since some moment before.
+    ///
+    /// # Errors
+    /// Same as [`Question::answer_watched`].
+    pub fn answer_timed(
+        &self,
+        settings: &Settings,
+        seed: u64,
+        stopwatch: &dyn Fn() -> f64,
+        goes_on: &dyn Fn(&'static str) -> bool,
+    ) -> Result<Answer, WorkflowError> {
         let observations: Vec<Observations> =
             self.given.iter().map(|given| given.observations.clone()).collect();
-        let stopwatch = || start.elapsed().as_secs_f64();
+        let start = stopwatch();
+        let stopwatch = || stopwatch() - start;
         let hold = self.stated.actuator.as_ref().and_then(|servo| servo.actuator.hold);
         let settings = &Settings { hold: settings.hold.or(hold), ..settings.clone() };
         let found =
@@ -287,5 +336,19 @@ impl Question {
         // An error in a question without a record names no file.
         let file = file.map(|given| given.row.path.clone()).unwrap_or_default();
         WorkflowError::Diagnosis { file, source }
+    }
+}
+
+/// Describes the work that follows a stage of a diagnosis; the empty name stands for the beginning.
+#[must_use]
+pub fn after(stage: &str) -> &'static str {
+    match stage {
+        "" => "measuring the record",
+        "measurement chain" => "recalibrating the simulator",
+        "calibration" => "searching for sets of effects",
+        "search" => "fitting the best sets on every sample",
+        "fits" => "predicting held-out parts",
+        "held-out parts" => "testing the residual for further effects",
+        _ => "describing the result",
     }
 }

@@ -3,7 +3,7 @@
 use crate::commands::learn::problem;
 use crate::configured::{ConfigArguments, Configured, read_document};
 use crate::error::TrainerError;
-use crate::fits::input::Input;
+use crate::fits::input;
 use crate::fits::method::Method;
 use crate::outcome::Outcome;
 use crate::terminal::table::table;
@@ -76,7 +76,7 @@ pub(crate) fn command(arguments: &ConfigArguments) -> Result<Outcome, TrainerErr
 }
 
 fn fits(experiment: &Experiment) -> Result<Vec<Line>, TrainerError> {
-    let input = Input::read(experiment)?;
+    let input = input::read(experiment)?;
     let method = match &experiment.task {
         Task::Estimate(Single::Learned { entry, .. }) => format!("{} ({})", entry.title, entry.id),
         Task::Estimate(Single::Classical(id)) => id.clone(),
@@ -85,7 +85,7 @@ fn fits(experiment: &Experiment) -> Result<Vec<Line>, TrainerError> {
             None => "all of the paper's".to_owned(),
         },
     };
-    let data = input.data_summary(experiment);
+    let data = input.data_summary(experiment.data.statements());
     let envelope = input.envelope_summary();
     let mut lines = vec![
         line("fits", method),

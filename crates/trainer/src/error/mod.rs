@@ -5,11 +5,11 @@ mod launch;
 mod learn;
 mod new;
 mod resume;
+mod serve;
 mod sweep;
 mod table;
 mod trials;
 
-use envelope::EnvelopeError;
 use estimator::FitError;
 use oracle::OracleError;
 use record::RecordError;
@@ -21,12 +21,14 @@ use studies::StudyError;
 use thiserror::Error;
 use tracking::TrackingError;
 use workflow::WorkflowError;
+use workflow::estimate::EstimateError;
 
 pub(crate) use kept::KeptError;
 pub(crate) use launch::LaunchError;
 pub(crate) use learn::LearnCommandError;
 pub(crate) use new::NewError;
 pub(crate) use resume::ResumeError;
+pub(crate) use serve::ServeError;
 pub(crate) use sweep::SweepCommandError;
 pub(crate) use table::TableError;
 pub(crate) use trials::TrialsError;
@@ -59,10 +61,8 @@ pub(crate) enum TrainerError {
         "{file} states the truth of a record {stated}, but {record} is {found}; remove it, or state the truth of this record"
     )]
     OtherTruth { file: String, record: String, stated: String, found: String },
-    #[error("{file}: {source}")]
-    Envelope { file: String, source: EnvelopeError },
-    #[error("{file}: {source}")]
-    Oracle { file: String, source: OracleError },
+    #[error(transparent)]
+    Estimate(#[from] EstimateError),
     #[error("{estimator}, seed {seed}: {source}")]
     Fit { estimator: &'static str, seed: u64, source: FitError },
     #[error("{method}, seed {seed}: {source}")]
@@ -116,6 +116,8 @@ pub(crate) enum TrainerError {
     #[error(transparent)]
     Resume(#[from] ResumeError),
     #[error(transparent)]
+    Serve(#[from] ServeError),
+    #[error(transparent)]
     Sweep(#[from] SweepCommandError),
     #[error(transparent)]
     Launch(#[from] LaunchError),
@@ -152,8 +154,7 @@ impl TrainerError {
             | Self::Record(_)
             | Self::AbsentRecord { .. }
             | Self::OtherTruth { .. }
-            | Self::Envelope { .. }
-            | Self::Oracle { .. }
+            | Self::Estimate(_)
             | Self::Classical { .. }
             | Self::Study(_)
             | Self::Tracking(_)
@@ -176,6 +177,7 @@ impl TrainerError {
             | Self::Launch(_)
             | Self::Table(_)
             | Self::Resume(_)
+            | Self::Serve(_)
             | Self::NoRun { .. }
             | Self::Run(_)
             | Self::Report(_)

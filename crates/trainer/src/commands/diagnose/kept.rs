@@ -6,10 +6,10 @@ use crate::folders::environment::Environment;
 use crate::folders::page::write_report;
 use record::file_digest;
 use results::{CaseFile, DiagnosisResult};
-use runs::{RunError, RunFolder, to_csv};
+use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use workflow::{Answer, Question, nominal, series_rows};
+use workflow::{Answer, Question, nominal};
 
 /// Event that records the question; it is written before the diagnosis itself.
 const ASKED: &str = "start";
@@ -48,9 +48,7 @@ pub(super) fn keep(
     folder.write_json("environment.json", &Environment::new(threads, &question.digests()))?;
     folder.write("nominal.toml", export::nominal_text(&question.stated.simulator).as_bytes())?;
     folder.record_event(ASKED, asked)?;
-    folder.write_json("diagnosis.json", &answer.result)?;
-    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
-    for (name, text) in export::files(&answer.repaired) {
+    for (name, text) in answer.files()? {
         folder.write(name, text.as_bytes())?;
     }
     write_report(folder)?;

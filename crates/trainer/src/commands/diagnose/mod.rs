@@ -19,7 +19,7 @@ use record::Quantity;
 use runs::{Disk, RunFolder, default_root};
 use std::path::{Path, PathBuf};
 use trials::BaselineRecord;
-use workflow::{Question, Reading};
+use workflow::{Question, Reading, after};
 
 /// Diagnoses the given records, or every case of a batch.
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
@@ -115,17 +115,4 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
     kept::keep(&folder, &question, &asked, &answer, pool.current_num_threads())?;
     arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
     Ok(Outcome::Done)
-}
-
-/// Describes the work that follows a stage.
-fn after(stage: &str) -> &'static str {
-    match stage {
-        "" => "measuring the record",
-        "measurement chain" => "recalibrating the simulator",
-        "calibration" => "searching for sets of effects",
-        "search" => "fitting the best sets on every sample",
-        "fits" => "predicting held-out parts",
-        "held-out parts" => "testing the residual for further effects",
-        _ => "describing the result",
-    }
 }

@@ -1,7 +1,5 @@
 //! `trainer init`: a first look at a log, and files to start from.
 
-mod damping;
-mod looked;
 mod modes;
 mod shell;
 mod tried;
@@ -14,8 +12,7 @@ use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
-use identify::{Estimated, regular_part};
-use looked::{CRITICAL, Looked, looked};
+use identify::Estimated;
 use modes::uncertain;
 use record::Fault;
 use report::format::significant;
@@ -24,8 +21,9 @@ use serde_json::{Value, json};
 use shell::{given, path_from, path_word};
 use std::path::{Path, PathBuf};
 use workflow::guess as files;
+use workflow::look::{Looked, changing};
 use workflow::read::{bias, coordinate_of};
-use workflow::{WorkflowError, in_options, left_out, logs};
+use workflow::{Log, WorkflowError};
 
 /// Inspects a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
 #[derive(Debug, Args)]
@@ -57,6 +55,8 @@ pub(crate) struct InitArguments {
 struct Found {
     /// Log whose oscillator is written: the one with the smallest standard error of the damping.
     surest: Looked,
+    /// Options that read it in the same way: those given, and `none` for an input that the motion does not follow.
+    reading: Reading,
     /// Frequency and damping of each log; empty for a single log.
     each: Vec<EachLog>,
     coordinate: Coordinate,
@@ -90,15 +90,15 @@ pub(crate) fn command(arguments: &InitArguments) -> Result<Outcome, TrainerError
 
 fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let InitArguments { log, out, .. } = arguments;
-    let paths = logs(log)?;
+    let logs = Log::read(log)?;
     let folder = out.clone().unwrap_or_else(|| folder_of(log));
     RunFolder::check_free(&folder).map_err(|error| match error {
         RunError::Occupied { path } => TrainerError::InitOccupied { folder: path.display().to_string() },
         other => other.into(),
     })?;
-    let mut looked =
-        paths.into_iter().map(|path| looked(&path, &arguments.reading)).collect::<Result<Vec<_>, _>>()?;
-    let each = if looked.len() > 1 { looked.iter().map(Looked::each).collect() } else { Vec::new() };
+    let plain = arguments.reading.plain();
+    let mut looked = logs.iter().map(|log| Looked::of(log, &plain)).collect::<Result<Vec<_>, _>>()?;
+    let each = if looked.len() > 1 { looked.iter().map(EachLog::of).collect() } else { Vec::new() };
     let bias = looked.iter().any(|looked| bias(&looked.look.record).is_some());
     let by_error = |one: &Looked, other: &Looked| {
         one.oscillator.damping.std_error.total_cmp(&other.oscillator.damping.std_error)
@@ -107,28 +107,27 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     // A folder without logs was refused above.
     let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
     let mut surest = looked.into_iter().next().ok_or_else(none)?;
-    surest.look.source.findings.extend(left_out(log));
+    surest.look.source.findings.extend(logs.first().and_then(|first| first.note.clone()));
     let coordinate = coordinate_of(surest.look.source.reading.coordinate);
     let (files, next, tried) = (Vec::new(), Vec::new(), Vec::new());
-    Ok(Found { surest, each, coordinate, folder, tried, files, next }
+    let mut reading = arguments.reading.clone();
+    if surest.without_input {
+        reading.input = Some("none".to_owned());
+    }
+    Ok(Found { surest, reading, each, coordinate, folder, tried, files, next }
         .with_diagnosis(log, bias)
         .with_estimate())
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
-fn options(looked: &Looked) -> Vec<(&'static str, String)> {
+fn options(looked: &Looked, reading: &Reading) -> Vec<(&'static str, String)> {
     let mut options = looked.look.source.reading.options();
-    let Reading { clock, input, .. } = &looked.reading;
+    let Reading { clock, input, .. } = reading;
     options.extend((*clock != Reading::default().clock).then(|| ("clock", clock.clone())));
     // A column that is left out on purpose would be found again.
     options
         .extend(input.clone().filter(|_| looked.look.record.input().is_none()).map(|none| ("input", none)));
     options
-}
-
-/// Returns `true` if a diagnosis can take a record: it is driven, or has a spring and enough cycles.
-fn is_diagnosable(looked: &Looked) -> bool {
-    looked.oscillator.input_gain.is_some() || looked.cycles().is_some_and(|cycles| cycles >= FEW_CYCLES)
 }
 
 /// Returns the folder for the files of a log: its name without its extension, or its name with `-nominal`
@@ -143,13 +142,13 @@ fn folder_of(log: &Path) -> PathBuf {
     PathBuf::from(format!("{name}-nominal"))
 }
 
-impl Looked {
-    fn each(&self) -> EachLog {
-        EachLog {
-            path: self.path.display().to_string(),
-            samples: self.look.record.len(),
-            natural_frequency_hz: self.oscillator.natural_frequency_hz(),
-            damping_ratio: self.oscillator.damping_ratio(),
+impl EachLog {
+    fn of(looked: &Looked) -> Self {
+        Self {
+            path: looked.look.source.path.clone(),
+            samples: looked.look.record.len(),
+            natural_frequency_hz: looked.oscillator.natural_frequency_hz(),
+            damping_ratio: looked.oscillator.damping_ratio(),
         }
     }
 }
@@ -175,10 +174,10 @@ fn apart(each: &[EachLog]) -> Option<String> {
 impl Found {
     /// Adds `nominal.toml`, and the diagnosis with it or its refusal.
     fn with_diagnosis(mut self, log: &Path, bias: bool) -> Self {
-        let Looked { path, reading, oscillator, .. } = &self.surest;
+        let (Looked { look, oscillator, .. }, reading) = (&self.surest, &self.reading);
         let file = self.folder.join("nominal.toml");
-        let text = files::nominal_toml(&path.display().to_string(), oscillator, self.coordinate);
-        if is_diagnosable(&self.surest) {
+        let text = files::nominal_toml(&look.source.path, oscillator, self.coordinate);
+        if self.surest.is_diagnosable() {
             let reading = Reading { remove_mean: bias || reading.remove_mean, ..reading.clone() };
             match tried::diagnosis(log, (&file, &text), &reading.plain()) {
                 Ok(()) => self.next.push((
@@ -200,15 +199,16 @@ impl Found {
     /// Adds `estimate.toml` and the estimate with it, or its refusal. Only a free decay has an envelope from which a
     /// damping ratio can be estimated.
     fn with_estimate(mut self) -> Self {
-        let Looked { path, oscillator, .. } = &self.surest;
-        if oscillator.input_gain.is_some() {
+        let path = Path::new(&self.surest.look.source.path);
+        if self.surest.oscillator.input_gain.is_some() {
             return self;
         }
         let file = self.folder.join("estimate.toml");
-        let configuration =
-            |path: &Path| files::configuration(&path.display().to_string(), &options(&self.surest));
+        let configuration = |path: &Path| {
+            files::configuration(&path.display().to_string(), &options(&self.surest, &self.reading))
+        };
         // The folder is not there yet, and a path out of it leads nowhere.
-        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match tried::estimate(&file, &configuration(&absolute)) {
             Ok(envelope) => {
                 let what = match envelope.because {
@@ -218,7 +218,7 @@ impl Found {
                 let text = configuration(&path_from(&self.folder, path));
                 self.files.push(("estimate.toml", text));
                 self.next.push((what, format!("trainer {}", path_word(&file))));
-                self.tried.extend(damping::changing(&envelope.envelope));
+                self.tried.extend(changing(&envelope.envelope));
             }
             // A motion without a swing has its own remark.
             Err(refusal) if self.surest.swings() => {
@@ -233,45 +233,19 @@ impl Found {
         let number = |estimated: Option<Estimated>| {
             estimated.map(|found| json!({ "value": found.value, "std_error": found.std_error }))
         };
-        let columns = self.surest.look.columns.iter().map(|column| {
-            json!({
-                "title": column.title, "unit": column.unit, "role": column.role, "holds": column.holds,
-                "because": column.because,
-            })
-        });
-        let resonance = self.surest.resonance();
-        json!({
-            "record": {
-                "path": self.surest.look.source.path,
-                "digest": self.surest.look.source.digest,
-                "samples": self.surest.look.record.len(),
-                "duration_s": self.surest.duration_s(),
-                "sample_rate_hz": self.surest.look.clock.sample_rate_hz,
-                "clock": self.surest.look.clock.kind.name(),
-                "clock_reason": self.surest.look.clock.reason,
-                "columns": columns.collect::<Vec<_>>(),
-                "reading": self.surest.look.source.reading,
-                "findings": self.findings(),
-            },
-            "oscillator": {
-                "coordinate": files::name(self.coordinate),
-                "natural_frequency_hz": number(self.surest.oscillator.natural_frequency_hz()),
-                "damping_ratio": number(self.surest.oscillator.damping_ratio()),
-                "quality_factor": resonance.map(|found| found.quality_factor),
-                "half_power_width_hz": resonance.map(|found| found.half_power_width_hz),
-                "damping_per_inertia": number(Some(self.surest.oscillator.damping)),
-                "rest": number(self.surest.oscillator.rest),
-                "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
-                "basis": files::basis(&self.surest.oscillator),
-            },
-            "modes": workflow::mode_rows(&self.surest.modes),
+        let mut found = self.surest.json(&self.findings());
+        let more = json!({
             "logs": self.each.iter().map(|log| json!({
                 "path": log.path, "samples": log.samples,
                 "natural_frequency_hz": number(log.natural_frequency_hz), "damping_ratio": number(log.damping_ratio),
             })).collect::<Vec<_>>(),
             "files": self.files.iter().map(|(name, _)| self.folder.join(name)).collect::<Vec<_>>(),
             "next": self.next.iter().map(|(_, command)| command).collect::<Vec<_>>(),
-        })
+        });
+        if let (Value::Object(found), Value::Object(more)) = (&mut found, more) {
+            found.extend(more);
+        }
+        found
     }
 
     fn summary(&self) -> String {
@@ -344,96 +318,10 @@ impl Found {
     }
 
     fn findings(&self) -> Vec<String> {
-        let read = self.surest.look.source.findings.iter().map(|finding| in_options(finding));
-        read.chain(bias(&self.surest.look.record))
-            .chain(apart(&self.each))
-            .chain(self.few_cycles())
-            .chain(self.no_swing())
-            .chain(modes::remark(&self.surest.modes))
-            .chain(self.uneven())
-            .chain(self.tried.clone())
-            .chain(self.hardly_known())
-            .chain(self.growth())
-            .collect()
-    }
-
-    /// Returns a warning if the swing grows, which no passive system does.
-    fn growth(&self) -> Option<String> {
-        let damping = self.surest.oscillator.damping;
-        (damping.value < 0.0 && damping.is_significant()).then(|| {
-            "the swing grows: something adds energy to it, which no passive simulator can do; the written \
-             damping is 0"
-                .to_owned()
-        })
-    }
-
-    /// Returns a warning if the frequency is so uncertain that the record may hold no swing.
-    fn hardly_known(&self) -> Option<String> {
-        let frequency = self.surest.oscillator.natural_frequency_hz()?;
-        let part = frequency.std_error / frequency.value;
-        (part > HARDLY_KNOWN).then(|| {
-            format!(
-                "the natural frequency is known to {:.0} % only: the record may hold noise and no swing, or a swing that \
-                 hardly oscillates",
-                100.0 * part
-            )
-        })
-    }
-
-    /// Returns a remark if only a part of the record swings evenly, and not because of another mode.
-    fn uneven(&self) -> Option<String> {
-        let Looked { look, modes, .. } = &self.surest;
-        let [from, to] = regular_part(&look.record, &look.clock).filter(|_| modes.len() < 2)?;
-        // Times of the clock begin where the stamps do.
-        let shift = look.record.stamps_s().first()? - look.clock.start_s();
-        Some(format!(
-            "amplitude or phase change unevenly outside {from:.2} s to {to:.2} s, as if a hand moved it or friction stopped it \
-             there: --from {from:.2} --to {to:.2} read that part alone",
-            from = from + shift,
-            to = to + shift
-        ))
-    }
-
-    /// Returns a remark if the record comes to rest without a swing.
-    fn no_swing(&self) -> Option<String> {
-        let oscillator = &self.surest.oscillator;
-        if oscillator.input_gain.is_some() {
-            return None;
-        }
-        match oscillator.damping_ratio() {
-            Some(ratio) if ratio.value < CRITICAL => None,
-            Some(_) => Some(
-                "no oscillation: the record comes to rest without a swing, as a critically damped or overdamped system does"
-                    .to_owned(),
-            ),
-            None => Some(
-                "no oscillation: the record comes to rest without a swing, as an overdamped or critically damped system \
-                 does, or it drifts, or is sampled less than two and a half times in a cycle; neither a frequency nor a damping ratio \
-                 can be read from it"
-                    .to_owned(),
-            ),
-        }
-    }
-
-    /// Returns a warning if the record is too short for its decay to show.
-    fn few_cycles(&self) -> Option<String> {
-        let cycles = self.surest.cycles()?;
-        (cycles < FEW_CYCLES).then(|| {
-            format!(
-                "the record shows {cycles:.1} cycles, too few to see what a simulator lacks; give a record of ten cycles or \
-                 more"
-            )
-        })
+        let found = self.surest.findings().into_iter().chain(apart(&self.each));
+        found.chain(self.surest.remarks()).chain(self.tried.clone()).collect()
     }
 }
-
-/// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
-/// records of noise, white or red, have 4 to 15 % or no frequency.
-const HARDLY_KNOWN: f64 = 0.03;
-
-/// Number of cycles below which a record says little about a decay: a diagnosis needs segments of them to
-/// hold out.
-const FEW_CYCLES: f64 = 3.0;
 
 /// Returns `true` if the program runs from cargo's build folder, where no shell finds it by its name.
 fn is_built_here() -> bool {

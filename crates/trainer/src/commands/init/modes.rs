@@ -10,17 +10,6 @@ pub(super) fn uncertain(estimated: Estimated) -> String {
     format!("{} (standard error)", with_uncertainty(estimated.value, estimated.std_error))
 }
 
-/// Returns a remark on the modes of a record that has several.
-pub(super) fn remark(modes: &[Mode]) -> Option<String> {
-    (modes.len() > 1).then(|| {
-        format!(
-            "the record holds {} modes; the numbers above are those of the strongest, and so are those of an estimate, \
-             before which the others are subtracted",
-            modes.len()
-        )
-    })
-}
-
 /// Returns the rows on the sharpness of a resonance.
 pub(super) fn sharpness(resonance: &Resonance) -> [Vec<String>; 2] {
     let row = |name: &str, value: String| vec![name.to_owned(), value];

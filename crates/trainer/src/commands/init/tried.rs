@@ -2,7 +2,7 @@
 
 use crate::configured::classical;
 use crate::error::TrainerError;
-use crate::fits::input::Input;
+use crate::fits::input;
 use envelope::Extraction;
 use registry::ESTIMATORS;
 use settings::Document;
@@ -13,7 +13,7 @@ use workflow::{Question, nominal};
 pub(super) fn estimate(file: &Path, text: &str) -> Result<Extraction, TrainerError> {
     let document = Document::parse(&file.display().to_string(), text)?;
     let experiment = experiment::resolve(&document, ESTIMATORS, &classical())?;
-    Ok(Input::read(&experiment)?.extraction)
+    Ok(input::read(&experiment)?.extraction)
 }
 
 /// Reads logs with the text of a nominal simulator, and checks them as a diagnosis does.

@@ -7,6 +7,7 @@ use crate::fits::ablations::{ablations, linfa};
 use crate::fits::agreement::disagreement;
 use crate::fits::cautions::cautions;
 use crate::fits::fit::{FitSetting, SeedFit, seeds};
+use crate::fits::input::scaled;
 use crate::fits::known_truth::{self, Answer};
 use crate::fits::method::{Method, Request};
 use crate::folders::page::write_report;
@@ -162,7 +163,7 @@ fn outcome(
     let errors = || rows.iter().map(|row| row.error_percent);
     let worst = scoring::worst(errors());
     let envelope = &run.input.extraction.envelope;
-    let stated = run.input.scaled(first.estimate.uncertainty, row.decay_rate);
+    let stated = scaled(&run.input, first.estimate.uncertainty, row.decay_rate);
     MethodOutcome::Estimate(MethodEstimate {
         decay_rate: row.decay_rate,
         zeta: row.zeta,
@@ -205,7 +206,7 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
         task: "compare".to_owned(),
         seed: experiment.seed,
         seeds: experiment.fit.seeds,
-        data: input.data_summary(experiment),
+        data: input.data_summary(experiment.data.statements()),
         oracle: input.oracle_summary(),
         derived,
         results,
@@ -215,7 +216,7 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
         pass,
         seconds,
         cautions,
-        disagreement: disagreement(&pipelines, &input.data_summary(experiment)),
+        disagreement: disagreement(&pipelines, &input.data_summary(experiment.data.statements())),
         truth: None,
         envelope,
         modes: workflow::modes(&input.record, &input.clock),

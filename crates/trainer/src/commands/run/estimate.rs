@@ -5,6 +5,7 @@ use super::summary;
 use crate::error::TrainerError;
 use crate::fits::agreement::disagreement;
 use crate::fits::fit::{FitSetting, SeedFit, seeds};
+use crate::fits::input::scaled;
 use crate::fits::known_truth::{self, Answer};
 use crate::fits::method::{Method, Request};
 use crate::folders::page::write_report;
@@ -71,7 +72,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
     let (experiment, input) = (run.experiment, &run.input);
     let envelope = &input.extraction.envelope;
     let estimate = &first.estimate;
-    let uncertainty = input.scaled(estimate.uncertainty, estimate.decay_rate);
+    let uncertainty = scaled(input, estimate.uncertainty, estimate.decay_rate);
     let tolerance = experiment.fit.tolerance_percent;
     let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
     let zeta = envelope.damping_ratio(estimate.decay_rate);
@@ -85,7 +86,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         estimator: method.id().to_owned(),
         estimator_title: method.title().to_owned(),
         seed: first.seed,
-        data: input.data_summary(experiment),
+        data: input.data_summary(experiment.data.statements()),
         envelope: input.envelope_summary(),
         oracle: input.oracle_summary(),
         estimate: EstimateSummary {
@@ -109,7 +110,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         parameters: estimate.parameters,
         seeds: rows,
         worst_error_percent: worst,
-        disagreement: disagreement(&input.pipelines, &input.data_summary(experiment)),
+        disagreement: disagreement(&input.pipelines, &input.data_summary(experiment.data.statements())),
         truth: None,
         modes: workflow::modes(&input.record, &input.clock),
         pipelines: input.pipelines.clone(),

@@ -11,7 +11,7 @@ mod summary;
 use crate::commands::{learn, simulate, trials};
 use crate::configured::{Configured, read_config};
 use crate::error::TrainerError;
-use crate::fits::input::Input;
+use crate::fits::input;
 use crate::fits::method::Method;
 use crate::folders::resume::{Beginning, Begun, Ledger, begin};
 use crate::options::ExperimentArguments;
@@ -41,7 +41,7 @@ pub(crate) fn run_until(
         Configured::Prediction(study) => return predict(arguments, &study, cancel),
         Configured::Experiment(experiment) => experiment,
     };
-    let input = Input::read(&experiment)?;
+    let input = input::read(&experiment)?;
     let pool = arguments.thread_pool()?;
     let config = experiment.resolved.to_toml();
     let beginning = Beginning::of(&experiment, &input.source.digest, config, pool.current_num_threads());
@@ -50,7 +50,7 @@ pub(crate) fn run_until(
         Begun::Finished(outcome) => return Ok(outcome),
     };
     let ledger = Ledger::open(&folder, experiment.checkpoint)?;
-    let input = input.with_pipelines(&experiment);
+    let input = input.with_pipelines(&experiment.envelope);
     let output = arguments.output;
     perform(&Run { experiment: &experiment, input, folder, ledger, pool, cancel, pause_after: None, output })
 }

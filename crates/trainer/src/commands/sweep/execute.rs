@@ -7,7 +7,7 @@ use crate::commands::learn::{self, Study};
 use crate::commands::run::{Run, perform};
 use crate::configured::registries;
 use crate::error::TrainerError;
-use crate::fits::input::Input;
+use crate::fits::input;
 use crate::folders::resume::{Beginning, FAILED, Ledger, TakenUp, start, take_up};
 use crate::options::Output;
 use crate::outcome::Outcome;
@@ -210,7 +210,7 @@ fn attempt(
     let resolved = Swept::resolve(&Document::parse(&line.config, config)?, &registries())?;
     match resolved.map_err(|task| TrainerError::System { what: "the task", problem: task })? {
         Swept::Experiment(experiment) => {
-            let input = Input::read(&experiment)?.with_pipelines(&experiment);
+            let input = input::read(&experiment)?.with_pipelines(&experiment.envelope);
             let beginning = Beginning::of(&experiment, &input.source.digest, config.to_owned(), 1);
             let Some(folder) = opened(sweep, line, &beginning, run, remark)? else {
                 return Ok(Outcome::Done);

@@ -10,7 +10,8 @@ const FEWEST: usize = 5;
 const APART: (f64, f64) = (6.0, 0.4);
 
 /// Returns a remark if the damping ratio of the last third of a decay differs from that of the first.
-pub(super) fn changing(envelope: &Envelope) -> Option<String> {
+#[must_use]
+pub fn changing(envelope: &Envelope) -> Option<String> {
     let third = envelope.len() / 3;
     if third < FEWEST {
         return None;

@@ -1,0 +1,8 @@
+//! First look at a log: what it was taken for, and the linear oscillator nearest to it.
+
+mod damping;
+mod looked;
+mod remarks;
+
+pub use damping::changing;
+pub use looked::Looked;

@@ -1,0 +1,48 @@
+// The answer: the report, everything to take along, and the command that gives the same.
+import { $, fill, make, save } from "./dom.js";
+import { nominal } from "./nominal.js";
+import { word, words } from "./options.js";
+import { zip } from "./zip.js";
+
+const MEANING = {
+  "report.html": "this report, one file",
+  "diagnosis.json": "every number",
+  "repaired.toml": "the repaired simulator, as a nominal one for the next diagnosis",
+  "repaired.py": "for SciPy",
+  "repaired.mo": "for Modelica",
+  "repaired.mjcf.xml": "for MuJoCo",
+  "repaired.urdf.xml": "for URDF",
+  "equation.txt": "the equation of motion",
+  "equation.tex": "the same for LaTeX",
+  "nominal.toml": "the simulator as it was",
+  "series.csv": "record and simulators, sample by sample",
+  "environment.json": "the program that computed it",
+};
+
+export const answered = (answer, logs, options) => {
+  const files = Object.keys(MEANING).map((name) => answer.files.find((file) => file.name === name)).filter(Boolean);
+  const each = files.map(({ name, text }) => make("li", {},
+    make("button", { type: "button", class: "link", onclick: () => save(name, [text]) }, name), ` ${MEANING[name]}`));
+  const command = ["trainer diagnose", ...logs.map((log) => word(log.name)), `--nominal ${word(nominal.name)}`, ...words(options)].join(" ");
+  fill($("take"),
+    make("p", { class: "sentence" }, answer.summary),
+    make("p", {}, make("button", { type: "button", class: "button", onclick: () => save("diagnosis.zip", [zip(files)], "application/zip") }, "Save all (ZIP)")),
+    make("details", {}, make("summary", {}, "Files"), make("ul", { class: "files" }, ...each)),
+    make("p", { class: "note" }, "The same on the command line, with this nominal.toml beside the log:"),
+    make("pre", { tabindex: "0", id: "command" }, command));
+  $("answer").hidden = false;
+  show(files.find((file) => file.name === "report.html").text);
+};
+
+// Shows the report as long as it is: one page, one scroll bar.
+const show = (html) => {
+  const frame = $("report");
+  frame.onload = () => {
+    const body = frame.contentDocument?.body;
+    if (!body) return;
+    const fit = () => { frame.style.height = `${frame.contentDocument.documentElement.scrollHeight + 8}px`; };
+    new frame.contentWindow.ResizeObserver(fit).observe(body);
+    fit();
+  };
+  frame.srcdoc = html;
+};

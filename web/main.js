@@ -1,0 +1,140 @@
+// The way through the page: logs, what they were taken for, the simulator, the diagnosis.
+import { $, fill, make } from "./dom.js";
+import { Cancelled, Engine, load } from "./engine.js";
+import { answered } from "./answer.js";
+import { offerExamples } from "./examples.js";
+import { estimatesShown } from "./estimate.js";
+import { logsShown } from "./logs.js";
+import { declare, offerOptions, options } from "./options.js";
+import { Progress } from "./progress.js";
+import { nominal, offerNominal } from "./nominal.js";
+
+// Beyond this, the samples need more memory than a browser gives.
+const LARGEST_MB = 100;
+
+const engine = new Engine();
+let logs = [];
+
+const say = (text) => { $("status").textContent = text; };
+
+const refuse = (text) => {
+  $("refusal").textContent = text;
+  $("refusal").hidden = !text;
+};
+
+const hide = (...ids) => ids.forEach((id) => { $(id).hidden = true; });
+
+// Takes dropped files: simulators by their ending, everything else as logs.
+const take = async (files) => {
+  const given = [...files];
+  const simulator = given.find((file) => /\.toml$/i.test(file.name));
+  const dropped = given.filter((file) => file !== simulator);
+  const robot = dropped.find((file) => /\.urdf$/i.test(file.name));
+  if (robot) {
+    return say(`${robot.name} is a robot of several joints, which the page does not diagnose. The program does: ` +
+      `trainer diagnose LOG --nominal ${robot.name}`);
+  }
+  const large = dropped.find((file) => file.size > LARGEST_MB * 2 ** 20);
+  if (large) {
+    hide("log", "simulator", "answer");
+    return say(`${large.name} has ${Math.round(large.size / 2 ** 20)} MB; the page reads files of up to ${LARGEST_MB} MB. ` +
+      "Cut it or thin it out, or use the program: trainer init FILE.");
+  }
+  const text = simulator && await simulator.text();
+  if (dropped.length) {
+    logs = dropped;
+    engine.files = logs;
+    offerOptions([]);
+    await look(text && { name: simulator.name, text });
+  } else if (text && logs.length) {
+    nominal.dropped(simulator.name, text);
+  } else {
+    say("Drop a log beside the simulator.");
+  }
+};
+
+// Reads the logs and shows what they were taken for.
+const look = async (simulator) => {
+  hide("answer");
+  refuse("");
+  fill($("estimates"));
+  say(logs.length === 1 ? `Reading ${logs[0].name} …` : `Reading ${logs.length} logs …`);
+  try {
+    const { logs: found } = await engine.ask({ do: "look", reading: options() });
+    logsShown(found);
+    offerOptions(found);
+    $("log").hidden = false;
+    const readable = found.filter((log) => !log.error);
+    $("reading").open = readable.length < found.length;
+    $("simulator").hidden = readable.length < found.length;
+    offerNominal(readable, simulator);
+    estimate();
+    say(readable.length < found.length
+      ? "Not every log could be read: see below."
+      : `Read: ${found.map((log) => log.name).join(", ")}.`);
+  } catch (error) {
+    hide("log", "simulator");
+    if (!(error instanceof Cancelled)) say(error.message);
+  }
+};
+
+// Estimates the damping once somebody asks for it.
+const estimate = async () => {
+  if (!$("estimate").open || $("estimates").childElementCount || engine.busy) return;
+  try {
+    estimatesShown((await engine.ask({ do: "estimate", reading: options() })).logs);
+  } catch (error) {
+    if (!(error instanceof Cancelled)) say(error.message);
+  }
+};
+
+const diagnose = async () => {
+  hide("answer");
+  refuse("");
+  const progress = new Progress();
+  $("cancel").hidden = false;
+  $("diagnose").disabled = true;
+  try {
+    const request = { do: "diagnose", reading: options(), nominal_name: nominal.name, nominal: nominal.text, name: logs[0].name };
+    answered(await engine.ask(request, (stage) => progress.begin(stage)), logs, options());
+    say("The diagnosis is below.");
+    $("answer-title").scrollIntoView();
+  } catch (error) {
+    if (error instanceof Cancelled) say("Cancelled.");
+    else refuse(error.message);
+  } finally {
+    progress.end();
+    $("cancel").hidden = true;
+    $("diagnose").disabled = false;
+  }
+};
+
+const listen = () => {
+  const drop = $("drop");
+  const held = (event) => event.dataTransfer?.types.includes("Files");
+  addEventListener("dragover", (event) => { if (held(event)) { event.preventDefault(); drop.classList.add("over"); } });
+  addEventListener("dragleave", () => drop.classList.remove("over"));
+  addEventListener("drop", (event) => {
+    drop.classList.remove("over");
+    if (!held(event)) return;
+    event.preventDefault();
+    take(event.dataTransfer.files);
+  });
+  $("files").addEventListener("change", ({ target }) => { take(target.files); target.value = ""; });
+  $("diagnose").addEventListener("click", diagnose);
+  $("estimate").addEventListener("toggle", estimate);
+  $("cancel").addEventListener("click", () => engine.cancel());
+  $("options").addEventListener("submit", (event) => { event.preventDefault(); look(); });
+};
+
+try {
+  await load();
+  listen();
+  const offer = await engine.ask({ do: "offer" });
+  declare(offer.options);
+  offerExamples(offer.examples, engine, take);
+  say("Ready.");
+  document.documentElement.dataset.ready = "true";
+} catch (error) {
+  fill($("status"), make("span", { class: "warning" }, `The page could not be loaded: ${error.message}`));
+}
