@@ -1,11 +1,12 @@
 //! Tests of `trainer diagnose LOG… --nominal ARM.urdf`: a robot of several joints.
 
-use crate::support::{measured, number, result, trainer};
+use crate::support::{measured, number, result, skipped, trainer};
 use dynamics::Active;
 use dynamics::tree::{Acting, State, rollout};
 use robot::Urdf;
 use std::fmt::Write as _;
 use std::path::Path;
+use std::process::Command;
 
 /// Two links on parallel axes, as URDF.
 const ARM: &str = r#"<robot name="arm">
@@ -152,7 +153,13 @@ fn what_cannot_be_a_robots_recording_is_refused_with_one_message() {
     let link =
         "<joint name=\"again\" type=\"fixed\"><parent link=\"base\"/><child link=\"lower\"/></joint></robot>";
     refused(&log, &file("loop.urdf", &ARM.replace("</robot>", link)), &[], "hangs on two joints, a loop");
-    refused(&log, &file("arm.xml", "<mujoco/>"), &[], "this is an MJCF model");
+    refused(&log, &file("mjcf.urdf", "<mujoco/>"), &[], "name its file with the ending .xml");
+    refused(
+        &file("no-torque.csv", &text.replace("elbow_torque", "x")),
+        &model,
+        &[],
+        "no column for the torque of joint `elbow`",
+    );
     refused(
         &log,
         &model,
@@ -163,6 +170,63 @@ fn what_cannot_be_a_robots_recording_is_refused_with_one_message() {
     refused(&log, &model, &["--armature", "elbow=heavy"], "elbow=0.0028");
     refused(&log, &model, &["--check", &log], "are the same record");
     refused(&short, &model, &[], "lasts 0.7");
+}
+
+/// The arm as MJCF.
+const MJCF: &str = r#"<mujoco><worldbody>
+<body><joint name="shoulder" axis="0 1 0"/><inertial pos="0 0 -0.25" mass="0.8" diaginertia="0.006 0.006 0.001"/>
+<body pos="0 0 -0.3"><joint name="elbow" axis="0 1 0"/><inertial pos="0 0 -0.2" mass="0.5" diaginertia="0.004 0.004 0.001"/></body></body>
+</worldbody></mujoco>
+"#;
+
+#[test]
+fn an_mjcf_is_read_through_python_and_written_back() {
+    let mujoco = Command::new("python3").args(["-c", "import mujoco"]).output();
+    if !mujoco.is_ok_and(|own| own.status.success()) {
+        skipped("there is no python3 with mujoco on the PATH");
+        return;
+    }
+    let scratch = tempfile::tempdir().unwrap();
+    let [log, _] = recorded(scratch.path());
+    let model = scratch.path().join("arm.xml");
+    std::fs::write(&model, MJCF).unwrap();
+    let (code, found, folder) =
+        result(&["diagnose", &log, "--nominal", model.to_str().unwrap(), "--joint", "elbow"]);
+    assert_eq!(code, 0);
+    let effects = found.pointer("/joints/0/diagnosis/effects").unwrap().as_array().unwrap();
+    let torque = effects.iter().find(|own| own["id"] == "coulomb_friction").unwrap();
+    assert!((number(torque, "/parameters/torque/value") / FRICTION - 1.0).abs() < 0.1, "{torque}");
+    let repaired = std::fs::read_to_string(folder.path().join("repaired.xml")).unwrap();
+    assert!(repaired.contains("<joint name=\"elbow\" axis=\"0 1 0\" damping="), "{repaired}");
+    assert!(repaired.contains("frictionloss=\"0.1"), "{repaired}");
+}
+
+/// What the interpreter says reaches the user as one message, and so does its absence.
+#[cfg(unix)]
+#[test]
+fn an_mjcf_without_python_or_its_mujoco_is_refused_with_one_message() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let scratch = tempfile::tempdir().unwrap();
+    let model = scratch.path().join("arm.xml");
+    std::fs::write(&model, MJCF).unwrap();
+    let empty = scratch.path().join("bin");
+    std::fs::create_dir(&empty).unwrap();
+    let refused = |expected: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trainer"));
+        command.args(["diagnose", "log.csv", "--nominal"]).arg(&model).env("PATH", &empty);
+        let output = command.output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(expected) && message.lines().count() == 1, "{message}");
+    };
+    refused("there is no python3 on the PATH");
+    let python = empty.join("python3");
+    let said = "MJCF models are read by mujoco, which is not installed: pip install mujoco";
+    std::fs::write(&python, format!("#!/bin/sh\necho '{{\"refused\": \"{said}\"}}'\n")).unwrap();
+    std::fs::set_permissions(&python, std::fs::Permissions::from_mode(0o755)).unwrap();
+    refused(said);
+    std::fs::write(&python, "#!/bin/sh\n").unwrap();
+    refused("ended without an answer");
 }
 
 /// The laboratory publishes 0.123 N m for the elbow.

@@ -53,9 +53,13 @@ pub(crate) fn measured(name: &str) -> Option<String> {
     if root().join(&relative).exists() {
         return Some(relative);
     }
-    let line = format!("SKIPPED: the measured record {relative} is not there\n");
-    std::io::stderr().write_all(line.as_bytes()).unwrap();
+    skipped(&format!("the measured record {relative} is not there"));
     None
+}
+
+/// Says that a test does nothing, past the test harness.
+pub(crate) fn skipped(reason: &str) {
+    std::io::stderr().write_all(format!("SKIPPED: {reason}\n").as_bytes()).unwrap();
 }
 
 /// Returns a JSON number by path, such as `/envelope/peaks`.

@@ -1,4 +1,4 @@
-"""Simulated arms with an effect in one joint, or in none, for a blind test of the diagnosis of robots.
+"""Simulated arms with an effect in one joint or two, or in none, for a blind test of the diagnosis of robots.
 
     python experiments/arms/make.py ARMS --count 20 --seed 1      makes ARMS/000, … (pip install mujoco numpy)
     python experiments/arms/run.py ARMS ANSWERS                   diagnoses and scores them
@@ -6,7 +6,8 @@
 Each folder holds arm.urdf (the nominal model), log.csv (positions and measured torques) and, sealed from the diagnosis,
 truth.json. Arms have two to six revolute joints, which a computed-torque controller moves along sums of sines. The encoder has
 noise and steps, the torque sensor noise and an offset. Effects: dry friction, Stribeck friction, quadratic drag, a cubic
-spring, viscous damping with an armature (which a recalibration explains), and nothing.
+spring, viscous damping with an armature (which a recalibration explains), and nothing. With --two, every third arm has an effect
+in a second joint.
 """
 import argparse
 import json
@@ -72,14 +73,35 @@ def simulate(model, truth, controller, reference, count):
             torque = matrix @ wanted + data.qfrc_bias
             rows.append((data.time, data.qpos.copy(), data.qvel.copy(), torque.copy()))
         data.qfrc_applied[:] = torque
-        joint = truth["joint"]
-        if joint is not None:
-            data.qfrc_applied[joint] += added(truth["effect"], truth["values"], data.qpos[joint], data.qvel[joint])
+        for own in truth["effects"]:
+            joint = own["joint"]
+            data.qfrc_applied[joint] += added(own["effect"], own["values"], data.qpos[joint], data.qvel[joint])
         mujoco.mj_step(model, data)
     return rows
 
 
-def make(folder, seed, noise):
+def drawn(draw, model, effect, joint, sizes, speeds, position, inertia):
+    """An effect in a joint, about a tenth to a third of its torque."""
+    size, speed = draw.uniform(0.08, 0.3) * sizes[joint], speeds[joint]
+    values = {}
+    if effect == "coulomb_friction":
+        values = {"torque": size}
+        model.dof_frictionloss[joint] = size
+        model.dof_solref[joint] = [2 * STEP, 1]
+        model.dof_solimp[joint] = [0.99, 0.999, 0.001, 0.5, 2]
+    elif effect == "stribeck_friction":
+        values = {"torque": size, "static_torque": 2 * size, "velocity": 0.3 * speed}
+    elif effect == "quadratic_drag":
+        values = {"coefficient": size / speed**2}
+    elif effect == "cubic_stiffness":
+        values = {"coefficient": 2 * size / position**3}
+    else:
+        values = {"damping": size / speed, "armature": 0.2 * inertia}
+        model.dof_damping[joint], model.dof_armature[joint] = values["damping"], values["armature"]
+    return {"effect": effect, "joint": joint, "values": values}
+
+
+def make(folder, seed, noise, two):
     draw = np.random.default_rng(seed)
     joints = int(draw.integers(2, 5 if draw.random() < 0.8 else 7))
     text = urdf(draw, joints)
@@ -95,27 +117,19 @@ def make(folder, seed, noise):
     omega = 2 * np.pi * 3
     gains = (omega**2, 1.4 * omega)
     effect = EFFECTS[draw.integers(len(EFFECTS))]
-    truth = {"effect": effect, "joint": None, "values": {}}
+    truth = {"effects": []}
     rows = simulate(model, truth, gains, reference, count)
     sizes = np.std([row[3] for row in rows], axis=0)
     speeds = np.std([row[2] for row in rows], axis=0)
+    positions = np.std([row[1] for row in rows], axis=0)
     if effect != "nothing":
-        joint = truth["joint"] = int(draw.integers(joints))
-        size, speed = draw.uniform(0.08, 0.3) * sizes[joint], speeds[joint]
-        if effect == "coulomb_friction":
-            truth["values"] = {"torque": size}
-            model.dof_frictionloss[joint] = size
-            model.dof_solref[joint] = [2 * STEP, 1]
-            model.dof_solimp[joint] = [0.99, 0.999, 0.001, 0.5, 2]
-        elif effect == "stribeck_friction":
-            truth["values"] = {"torque": size, "static_torque": 2 * size, "velocity": 0.3 * speed}
-        elif effect == "quadratic_drag":
-            truth["values"] = {"coefficient": size / speed**2}
-        elif effect == "cubic_stiffness":
-            truth["values"] = {"coefficient": 2 * size / np.std([row[1][joint] for row in rows]) ** 3}
-        else:
-            truth["values"] = {"damping": size / speed, "armature": 0.2 * matrix[joint, joint]}
-            model.dof_damping[joint], model.dof_armature[joint] = truth["values"]["damping"], truth["values"]["armature"]
+        places = [int(draw.integers(joints))]
+        chosen = [effect]
+        if two and seed % 3 == 0:
+            places.append(int((places[0] + 1 + draw.integers(joints - 1)) % joints))
+            chosen.append(EFFECTS[draw.integers(len(EFFECTS) - 1)])
+        for own, joint in zip(chosen, places):
+            truth["effects"].append(drawn(draw, model, own, joint, sizes, speeds, positions[joint], matrix[joint, joint]))
         rows = simulate(model, truth, gains, reference, count)
     step = 2 * np.pi / 2**14 * noise
     positions = np.array([row[1] for row in rows]) + draw.normal(0, 0.5 * step, (count, joints))
@@ -136,9 +150,10 @@ def main():
     options.add_argument("--count", type=int, default=20)
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--noise", type=float, default=1.0, help="factor of the encoder's noise and steps")
+    options.add_argument("--two", action="store_true", help="an effect in a second joint of every third arm")
     given = options.parse_args()
     for index in range(given.count):
-        make(given.folder / f"{index:03}", 1000 * given.seed + index, given.noise)
+        make(given.folder / f"{index:03}", 1000 * given.seed + index, given.noise, given.two)
 
 
 main()

@@ -18,6 +18,7 @@ from ._learn import About, Ahead, Learned, Learner, Stretch, learn
 from ._native import ConfigError, DiagnosisError, FitError, RecordError, RingdownError
 from ._nominal import Nominal
 from ._record import Record
+from ._robot import Joints, Robot
 from ._simulate import effects, simulate
 
 __all__ = [
@@ -29,12 +30,14 @@ __all__ = [
     "Estimate",
     "Estimator",
     "FitError",
+    "Joints",
     "Learned",
     "Learner",
     "Nominal",
     "Record",
     "RecordError",
     "RingdownError",
+    "Robot",
     "Stretch",
     "cluster",
     "diagnose",

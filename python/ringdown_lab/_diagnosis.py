@@ -6,15 +6,17 @@ import json
 from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
 from ._html import diagnosis_html
+from ._native import ConfigError
 from ._nominal import Nominal
 from ._record import Record, as_records
+from ._robot import Joints, Robot
 
 
 class Diagnosis:
@@ -117,20 +119,47 @@ class Diagnosis:
         return f"<Diagnosis {self.verdict['status']}: {', '.join(self.verdict['effects']) or 'no effect'}>"
 
 
+@overload
+def diagnose(
+    records: Any,
+    nominal: Robot,
+    *,
+    joints: Sequence[str] = ...,
+    false_alarm: float | None = ...,
+    most_effects: int | None = ...,
+    without: Sequence[str] = ...,
+    seed: int = ...,
+    threads: int | None = ...,
+    progress: Callable[[str], object] | None = ...,
+) -> Joints: ...
+@overload
 def diagnose(
     records: Record | str | PathLike[str] | Iterable[Record | str | PathLike[str]],
     nominal: Nominal | str | PathLike[str],
     *,
+    false_alarm: float | None = ...,
+    most_effects: int | None = ...,
+    without: Sequence[str] = ...,
+    seed: int = ...,
+    threads: int | None = ...,
+    progress: Callable[[str], object] | None = ...,
+) -> Diagnosis: ...
+def diagnose(
+    records: Any,
+    nominal: Nominal | Robot | str | PathLike[str],
+    *,
+    joints: Sequence[str] = (),
     false_alarm: float | None = None,
     most_effects: int | None = None,
     without: Sequence[str] = (),
     seed: int = 0,
     threads: int | None = None,
     progress: Callable[[str], object] | None = None,
-) -> Diagnosis:
+) -> Diagnosis | Joints:
     """Diagnoses the gap between a nominal simulator and records of one system.
 
-    records: one record or several, as records or as paths. nominal: the simulator, or the path of its ``nominal.toml``.
+    records: one record or several, as records or as paths. nominal: the simulator, or the path of its ``nominal.toml``; or a
+    Robot, whose records are logs of all its joints (``Robot.diagnose``). joints: names of the robot's joints to diagnose.
     false_alarm: false-alarm probability of the search for effects, 0.001 to 0.2.
     most_effects: largest number of effects in one fitted set, 1 to 5. without: effects that are not considered.
     seed: root of the random draws. threads: how many; the answer does not depend on it.
@@ -141,6 +170,19 @@ def diagnose(
     Raises RecordError for records that cannot be of this system, DiagnosisError for records that say nothing of it, ConfigError
     for options out of range.
     """
+    if isinstance(nominal, Robot):
+        return nominal.diagnose(
+            records,
+            joints=joints,
+            false_alarm=false_alarm,
+            most_effects=most_effects,
+            without=without,
+            seed=seed,
+            threads=threads,
+            progress=progress,
+        )
+    if joints:
+        raise ConfigError("joints are those of a Robot; the nominal simulator given is that of one oscillator")
     system = nominal if isinstance(nominal, Nominal) else Nominal.read(nominal)
     return Diagnosis(
         _native.diagnose(

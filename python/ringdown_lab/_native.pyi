@@ -66,6 +66,34 @@ class NativeDiagnosis:
     def report_html(self) -> str: ...
     def series(self) -> dict[str, _Array]: ...
 
+class NativeRobot:
+    @staticmethod
+    def from_urdf(path: str | PathLike[str]) -> NativeRobot: ...
+    @staticmethod
+    def of(name: str, answer: Callable[[str], str], text: str | None) -> NativeRobot: ...
+    @property
+    def joints(self) -> list[str]: ...
+
+class NativeJoints:
+    def to_json(self) -> str: ...
+    @property
+    def repaired(self) -> str | None: ...
+
+def diagnose_joints(
+    logs: Sequence[str | PathLike[str]],
+    robot: NativeRobot,
+    *,
+    joints: Sequence[str],
+    columns: Sequence[str],
+    check: Sequence[str | PathLike[str]],
+    reading: str,
+    false_alarm: float | None,
+    most_effects: int | None,
+    without: Sequence[str],
+    seed: int,
+    threads: int | None,
+    progress: Callable[[str], object] | None,
+) -> NativeJoints: ...
 def diagnose(
     records: Sequence[NativeRecord],
     nominal: NativeNominal,

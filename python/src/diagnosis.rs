@@ -59,6 +59,22 @@ const SERIES: &[Column] = &[
     ("repaired", |row| row.repaired),
 ];
 
+/// Options, with the defaults of the command line.
+pub(crate) fn options_of(
+    false_alarm: Option<f64>,
+    most_effects: Option<usize>,
+    without: Vec<String>,
+    seed: u64,
+) -> DiagnosisOptions {
+    let usual = DiagnosisOptions::default();
+    DiagnosisOptions {
+        false_alarm: false_alarm.unwrap_or(usual.false_alarm),
+        most_effects: most_effects.unwrap_or(usual.most_effects),
+        without,
+        seed,
+    }
+}
+
 /// Diagnoses records.
 #[pyfunction]
 #[pyo3(signature = (records, nominal, *, false_alarm, most_effects, without, seed, threads, progress))]
@@ -76,13 +92,7 @@ pub(crate) fn diagnose(
 ) -> PyResult<NativeDiagnosis> {
     let records = records.iter().map(|record| record.get().record(py)).collect::<PyResult<Vec<_>>>()?;
     let nominal = nominal.get().nominal.clone();
-    let usual = DiagnosisOptions::default();
-    let options = DiagnosisOptions {
-        false_alarm: false_alarm.unwrap_or(usual.false_alarm),
-        most_effects: most_effects.unwrap_or(usual.most_effects),
-        without,
-        seed,
-    };
+    let options = options_of(false_alarm, most_effects, without, seed);
     let diagnosis = beside(py, progress, move |watch| {
         let goes_on = |stage: &'static str| watch.tell(stage);
         on_threads(threads, || diagnose_watched(&records, &nominal, &options, &goes_on))

@@ -10,6 +10,7 @@ mod learning;
 mod nominal;
 mod program;
 mod record;
+mod robot;
 mod simulate;
 mod words;
 mod work;
@@ -31,6 +32,8 @@ mod _native {
     use crate::program::program;
     #[pymodule_export]
     use crate::record::NativeRecord;
+    #[pymodule_export]
+    use crate::robot::{NativeJoints, NativeRobot, diagnose_joints};
     #[pymodule_export]
     use crate::simulate::{effects, simulate};
 }

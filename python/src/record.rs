@@ -252,8 +252,13 @@ impl NativeRecord {
     }
 }
 
+/// The options of reading, given as JSON.
+pub(crate) fn reading_of(json: &str) -> PyResult<Reading> {
+    Ok(options::<ReadingWords>("reading options", json)?.reading())
+}
+
 fn reading_for(json: &str, nominal: Option<&Bound<'_, crate::nominal::NativeNominal>>) -> PyResult<Reading> {
-    let reading = options::<ReadingWords>("reading options", json)?.reading();
+    let reading = reading_of(json)?;
     Ok(match nominal {
         Some(nominal) => nominal.get().nominal.reading(reading),
         None => reading,

@@ -37,7 +37,7 @@ impl Default for DiagnosisOptions {
 }
 
 impl DiagnosisOptions {
-    fn settings(&self) -> Result<diagnosis::Settings, Error> {
+    pub(crate) fn settings(&self) -> Result<diagnosis::Settings, Error> {
         if !(0.001..=0.2).contains(&self.false_alarm) {
             let found = self.false_alarm;
             return Err(config(format!("false_alarm is {found}; expected 0.001 to 0.2")));

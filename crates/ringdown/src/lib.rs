@@ -24,6 +24,8 @@
 //! it that they close. A [`Diagnosis`] holds the content of `diagnosis.json`, the repaired simulator, and a
 //! report.
 //!
+//! [`diagnose_robot`] does the same for a [`Robot`] of several joints.
+//!
 //! # Simulation
 //!
 //! [`Simulation`] makes records with any of the [`effects`] known to the diagnosis, including those of the
@@ -42,10 +44,13 @@ mod estimate;
 mod learn;
 mod nominal;
 mod record;
+mod robot;
 mod simulate;
 
 pub use crate::learn::{LearnOptions, OwnLearner, learn};
 pub use crate::record::{Arrays, Record};
+pub use crate::robot::{Joints, JointsOptions, Robot, diagnose_robot};
+pub use ::robot::Simulator;
 pub use diagnose::{Diagnosis, DiagnosisOptions, diagnose, diagnose_watched};
 pub use error::Error;
 pub use estimate::{

@@ -1,8 +1,11 @@
 //! Closed loop: the whole model, run under the recorded torques from measured states.
 
+use crate::along::{Along, interpolated};
 use crate::error::RobotError;
-use crate::projection::{Motion, Recording, interpolated};
-use dynamics::tree::{Acting, State, Tree, TreeError, rollout};
+use crate::model::{JointInfo, Model};
+use crate::recording::Recording;
+use dynamics::Hold;
+use dynamics::tree::{Acting, TreeError};
 use std::ops::Range;
 
 /// Errors of a model at one joint.
@@ -31,47 +34,58 @@ pub struct ClosedLoop {
     pub runs: usize,
 }
 
-/// Times and torques of one joint.
-type Torques<'a> = (&'a [f64], &'a [f64]);
+/// Times and torques of one joint, as values that change linearly.
+type Torques<'a> = (&'a [f64], Vec<f64>);
 
 /// Returns times and torques of every joint.
-fn torques<'a>(recording: &'a Recording, names: &[&str]) -> Result<Vec<Torques<'a>>, RobotError> {
+fn torques<'a>(
+    recording: &'a Recording,
+    joints: &[JointInfo],
+    holds: &[Hold],
+) -> Result<Vec<Torques<'a>>, RobotError> {
     let mut torques = Vec::new();
-    for (channel, name) in recording.joints.iter().zip(names) {
-        let own = channel.torques.as_ref().ok_or_else(|| RobotError::NoColumn {
+    for ((channel, joint), hold) in recording.joints.iter().zip(joints).zip(holds) {
+        let own = channel.linear_torques(*hold).ok_or_else(|| RobotError::NoColumn {
             log: recording.name.clone(),
             quantity: "torque",
-            joint: (*name).to_owned(),
+            joint: joint.name.clone(),
             columns: "positions only".to_owned(),
-            option: format!("{name}=POSITION,TORQUE"),
+            option: format!("{}=POSITION,TORQUE", joint.name),
         })?;
-        torques.push((channel.times.as_slice(), own.as_slice()));
+        torques.push((channel.times.as_slice(), own));
     }
     Ok(torques)
+}
+
+/// Torques that act in the joints of a variant of a model, and the behavior of each drive between samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Variant<'a> {
+    /// Torques beside the drive, by joint.
+    pub acting: &'a [Acting],
+    /// Behavior of the drive's torque between samples, by joint.
+    pub holds: &'a [Hold],
 }
 
 /// Runs a model with what acts in its joints over a recording, in runs of `span` seconds from the measured state, and
 /// compares the positions. Only the part of the recording between two shares of its length is used.
 ///
 /// # Errors
-/// [`RobotError::NoColumn`] if a torque was not recorded; [`RobotError::Short`] for a recording below a second;
-/// [`RobotError::Tree`] from the model.
+/// [`RobotError::NoColumn`] if a torque was not recorded; [`RobotError::Model`] and [`RobotError::Motion`] from the model.
 pub fn closed_loop(
-    tree: &Tree,
-    acting: &[Acting],
-    recording: &Recording,
+    model: &dyn Model,
+    Variant { acting, holds }: Variant<'_>,
+    along: &Along,
     (span, part): (f64, Range<f64>),
 ) -> Result<ClosedLoop, RobotError> {
-    let motion = Motion::of(recording)?;
-    let names: Vec<&str> = tree.names().collect();
-    let torques = torques(recording, &names)?;
+    let recording = along.recording();
+    let torques = torques(recording, model.joints(), holds)?;
     let Some(first) = recording.joints.first() else { return Ok(ClosedLoop { joints: None, runs: 0 }) };
-    let width = motion.width();
+    let width = along.width();
     let count = first.times.len();
     let from = ((part.start * count as f64) as usize).max(width);
     let to = ((part.end * count as f64) as usize).min(count.saturating_sub(width));
     let times = first.times.get(from..to).unwrap_or_default();
-    let mut errors = vec![JointError::default(); names.len()];
+    let mut errors = vec![JointError::default(); model.joints().len()];
     let mut runs = 0;
     let mut at = 0;
     while let Some(&begin) = times.get(at) {
@@ -82,18 +96,18 @@ pub fn closed_loop(
         if runs > 0 && lasts < 0.5 * span || run.len() < 2 {
             break;
         }
-        let along = |time: f64| -> Vec<f64> {
+        let drive = |time: f64| -> Vec<f64> {
             // A channel has samples: its length was checked.
             torques.iter().map(|(times, own)| interpolated(times, own, time).unwrap_or(0.0)).collect()
         };
-        let start = motion.state(begin);
-        let inputs: Vec<Vec<f64>> = run.iter().map(|time| along(*time)).collect();
-        let path = match rollout(tree, acting, &start, run, &inputs) {
+        let start = along.state(begin);
+        let inputs: Vec<Vec<f64>> = run.iter().map(|time| drive(*time)).collect();
+        let path = match model.rollout(acting, &start, run, &inputs) {
             Ok(path) => path,
-            Err(TreeError::Diverged { .. } | TreeError::NoInertia { .. }) => {
+            Err(RobotError::Motion(TreeError::Diverged { .. } | TreeError::NoInertia { .. })) => {
                 return Ok(ClosedLoop { joints: None, runs });
             }
-            Err(source) => return Err(RobotError::Tree { file: recording.name.clone(), source }),
+            Err(error) => return Err(error),
         };
         for (time, position) in run.iter().zip(path) {
             for ((error, channel), own) in errors.iter_mut().zip(&recording.joints).zip(position) {
@@ -108,17 +122,4 @@ pub fn closed_loop(
         at = end;
     }
     Ok(ClosedLoop { joints: Some(errors), runs })
-}
-
-impl Motion<'_> {
-    /// Returns the smoothed state of all joints at a time.
-    fn state(&self, time: f64) -> State {
-        let joints = self.joints.iter().zip(&self.recording.joints);
-        // A channel has samples: its length was checked.
-        let at = |values: &[f64], times: &[f64]| interpolated(times, values, time).unwrap_or(0.0);
-        let (position, velocity) = joints
-            .map(|(own, channel)| (at(&own.position, &channel.times), at(&own.velocity, &channel.times)))
-            .unzip();
-        State { position, velocity }
-    }
 }

@@ -197,7 +197,14 @@ mod tests {
     use crate::model::JointInfo;
 
     fn joints() -> Vec<JointInfo> {
-        let joint = |name: &str| JointInfo { name: name.into(), slides: false, damping: 0.0, friction: 0.0 };
+        let joint = |name: &str| JointInfo {
+            name: name.into(),
+            slides: false,
+            damping: 0.0,
+            friction: 0.0,
+            armature: None,
+            stiffness: None,
+        };
         vec![joint("shoulder"), joint("el-bow")]
     }
 

@@ -31,6 +31,8 @@ pub(crate) struct Drive {
     pub(crate) density: f64,
     /// Constant torque in the drive, by recording, in N m or N.
     pub(crate) offsets: Vec<f64>,
+    /// Share of the squares of dry friction's motion that the other columns do not imitate.
+    pub(crate) friction_alone: f64,
 }
 
 /// Returns the motion of an oscillator at rest under torques at times, linear in between.
@@ -89,6 +91,16 @@ fn fitted(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     solution.iter().zip(&lengths).map(|(own, length)| own / length).collect()
 }
 
+/// Returns the sum of the squares that columns with coefficients leave.
+fn squares_left(columns: &[Vec<f64>], coefficients: &[f64], mut target: Vec<f64>) -> f64 {
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        for (left, own) in target.iter_mut().zip(column) {
+            *left -= coefficient * own;
+        }
+    }
+    target.iter().map(|own| own * own).sum()
+}
+
 /// Estimates noise and offsets of the drive of a joint from its recordings. `turns` is `true` for a joint whose
 /// coordinate is an angle.
 pub(crate) fn drive_noise(tracking: &Tracking, recordings: &[Vec<Sample>], turns: bool) -> Drive {
@@ -128,19 +140,19 @@ pub(crate) fn drive_noise(tracking: &Tracking, recordings: &[Vec<Sample>], turns
     let laws = columns.len();
     columns.extend(offsets);
     let found = fitted(&columns, &target);
-    let mut left = target;
-    for (column, coefficient) in columns.iter().zip(&found) {
-        for (left, own) in left.iter_mut().zip(column) {
-            *left -= coefficient * own;
-        }
-    }
-    let variance = left.iter().map(|own| own * own).sum::<f64>() / count.max(1) as f64;
+    let left = squares_left(&columns, &found, target);
+    let variance = left / count.max(1) as f64;
+    let friction_alone = columns.split_first().map_or(0.0, |(friction, others)| {
+        let all: f64 = friction.iter().map(|own| own * own).sum();
+        squares_left(others, &fitted(others, friction), friction.clone()) / all.max(f64::MIN_POSITIVE)
+    });
     // Two numbers for each second and hertz of the oscillator's noise bandwidth, k/(4c).
     let numbers = 2.0 * seconds * tracking.stiffness / (4.0 * tracking.damping);
     let taken = (columns.len() as f64 / numbers.max(f64::MIN_POSITIVE)).min(MOST_TAKEN);
     Drive {
         density: 2.0 * tracking.damping * tracking.stiffness * variance / (1.0 - taken),
         offsets: found.iter().skip(laws).step_by(3).copied().collect(),
+        friction_alone,
     }
 }
 

@@ -34,6 +34,17 @@ pub enum RobotError {
         /// Fault that was found.
         source: TreeError,
     },
+    /// A model is read by another program, which is absent or refuses it.
+    #[error("{file}: {problem}")]
+    Simulator {
+        /// Name of the file.
+        file: String,
+        /// Reason, and its remedy.
+        problem: String,
+    },
+    /// A motion cannot be computed.
+    #[error(transparent)]
+    Motion(#[from] TreeError),
     /// The joints of the log are not those of the model.
     #[error(
         "{log}: no column belongs to a joint of the model, whose joints are {joints}; the header has {columns}. Expected names \

@@ -18,58 +18,25 @@
 //! beyond c is viscous friction, and k times the rest angle is a constant torque, such as the offset of a torque
 //! sensor.
 //!
+//! The drive is computed for torques that keep their last sample and for torques that change linearly; the behavior that leaves
+//! less unexplained is taken. Half a sampling interval of delay would pass for a damping of −M_ii ω² times as much.
+//!
 //! # Reference
 //! Luenberger, IEEE Transactions on Military Electronics 8 (1964) 74.
 
+use crate::along::Along;
 use crate::drive_noise::{Drive, Sample, drive_noise};
 use crate::error::RobotError;
-use crate::model::Model;
-use crate::smoothing::{Smoothed, smoothed};
+use crate::model::JointInfo;
 use crate::tracking::Tracking;
+use dynamics::Hold;
 
 /// Damping ratio of the spring and damper that hold a simulator to the measured motion.
 const DAMPING_RATIO: f64 = 0.7;
 
-/// Shortest recording, in seconds.
-const SHORTEST_S: f64 = 1.0;
-
-/// Samples of one joint.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
-    /// Times in seconds, ascending, of the same clock for all joints.
-    pub times: Vec<f64>,
-    /// Positions in rad or m.
-    pub positions: Vec<f64>,
-    /// Torques in N m, or forces in N; `None` if they were not recorded.
-    pub torques: Option<Vec<f64>>,
-}
-
-/// Recording of all joints of a robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
-    /// Name in messages.
-    pub name: String,
-    /// Joints in the model's order.
-    pub joints: Vec<Channel>,
-}
-
-impl Recording {
-    /// Checks that every joint was recorded for a second.
-    ///
-    /// # Errors
-    /// [`RobotError::Short`].
-    pub fn check_length(&self) -> Result<(), RobotError> {
-        for channel in &self.joints {
-            let ends = channel.times.first().zip(channel.times.last());
-            // A channel without samples lasts 0 s.
-            let seconds = ends.map_or(0.0, |(first, last)| last - first);
-            if seconds < SHORTEST_S {
-                return Err(RobotError::Short { log: self.name.clone(), seconds });
-            }
-        }
-        Ok(())
-    }
-}
+/// Behaviors of the drive's torque between samples that are told apart: a controller keeps its last output, a sensor's torque
+/// changes in between.
+const HOLDS: [Hold; 2] = [Hold::Zero, Hold::Linear];
 
 /// Recording of one joint as the diagnosis of an oscillator reads it.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,6 +49,17 @@ pub struct Part {
     pub offset: f64,
 }
 
+/// Size of a joint's motion, which says what its recordings can tell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Root mean square of the drive's torque about its mean, in N m or N.
+    pub torque: f64,
+    /// Root mean square of the speed, per second.
+    pub speed: f64,
+    /// Share of the squares of dry friction's motion that an armature, a spring and smooth damping do not imitate.
+    pub friction_alone: f64,
+}
+
 /// One joint's problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Projected {
@@ -91,61 +69,12 @@ pub struct Projected {
     pub tracking: Tracking,
     /// Two-sided spectral density of the drive's noise, in (N m)² s or N² s.
     pub drive_noise: f64,
+    /// Size of the motion.
+    pub scale: Scale,
+    /// Behavior of the torque between samples that leaves less unexplained.
+    pub hold: Hold,
     /// One part for each recording.
     pub parts: Vec<Part>,
-}
-
-/// Motion of all joints at the times of one of them.
-struct Along {
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-    acceleration: Vec<f64>,
-}
-
-/// Returns a value between samples, linear in between.
-pub(crate) fn interpolated(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
-    let after = times.partition_point(|own| *own < time);
-    let last = times.len().checked_sub(1)?;
-    let (before, after) = (after.saturating_sub(1).min(last), after.min(last));
-    let (from, to) = (*times.get(before)?, *times.get(after)?);
-    let (low, high) = (*values.get(before)?, *values.get(after)?);
-    let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
-    Some(low + share * (high - low))
-}
-
-/// Smoothed recording.
-pub(crate) struct Motion<'a> {
-    pub(crate) recording: &'a Recording,
-    pub(crate) joints: Vec<Smoothed>,
-}
-
-impl<'a> Motion<'a> {
-    pub(crate) fn of(recording: &'a Recording) -> Result<Self, RobotError> {
-        recording.check_length()?;
-        let joints = recording.joints.iter().map(|own| smoothed(&own.times, &own.positions)).collect();
-        Ok(Self { recording, joints })
-    }
-
-    /// Returns the largest number of samples on each side that a smoothed one depends on.
-    pub(crate) fn width(&self) -> usize {
-        // Without joints there is nothing to smooth.
-        self.joints.iter().map(|own| own.half_width).max().unwrap_or(0)
-    }
-
-    /// Returns the motion of all joints at a time; `at` is the index of this time among the samples of `joint`.
-    fn along(&self, joint: usize, at: usize, time: f64) -> Option<Along> {
-        let mut along = Along { position: Vec::new(), velocity: Vec::new(), acceleration: Vec::new() };
-        for (index, (own, channel)) in self.joints.iter().zip(&self.recording.joints).enumerate() {
-            let same = index == joint || channel.times.get(at) == Some(&time);
-            let value = |values: &[f64]| {
-                if same { values.get(at).copied() } else { interpolated(&channel.times, values, time) }
-            };
-            along.position.push(value(&own.position)?);
-            along.velocity.push(value(&own.velocity)?);
-            along.acceleration.push(value(&own.acceleration)?);
-        }
-        Some(along)
-    }
 }
 
 /// Torques at one sample of one joint.
@@ -153,37 +82,21 @@ struct Torques {
     time: f64,
     /// Joint's own entry of the mass matrix.
     inertia: f64,
-    /// Known torques without the inertia of the joint itself.
-    known: f64,
+    /// Torque that the model needs beside the inertia of the joint itself.
+    model: f64,
+    /// Torque of the drive, by [`HOLDS`].
+    drives: [f64; 2],
     velocity: f64,
     acceleration: f64,
     position: f64,
 }
 
-fn torques(
-    model: &dyn Model,
-    along: &Along,
-    joint: usize,
-    (time, torque): (f64, f64),
-) -> Result<Torques, RobotError> {
-    let short = || RobotError::Model {
-        quantity: "mass matrix",
-        problem: "its size is not that of the joints".into(),
-    };
-    let matrix = model.mass_matrix(&along.position)?;
-    let bias = model.bias(&along.position, &along.velocity)?;
-    let row = matrix.get(joint).ok_or_else(short)?;
-    let others = row.iter().zip(&along.acceleration).enumerate().filter(|(index, _)| *index != joint);
-    let others: f64 = others.map(|(_, (entry, rate))| entry * rate).sum();
-    let of = |values: &[f64]| values.get(joint).copied().ok_or_else(short);
-    Ok(Torques {
-        time,
-        inertia: of(row)?,
-        known: torque - of(&bias)? - others,
-        velocity: of(&along.velocity)?,
-        acceleration: of(&along.acceleration)?,
-        position: of(&along.position)?,
-    })
+impl Torques {
+    /// Returns the known torques without the inertia of the joint itself.
+    fn known(&self, hold: Hold) -> f64 {
+        let [held, linear] = self.drives;
+        (if hold == Hold::Zero { held } else { linear }) - self.model
+    }
 }
 
 /// Length in seconds of the stretches whose mean positions the pace is measured about: a joint that turns on and on has no
@@ -206,63 +119,96 @@ fn pace(samples: &[Vec<Torques>]) -> Option<f64> {
     (distances > 0.0 && speeds > 0.0).then(|| (speeds / distances).sqrt())
 }
 
-/// Projects recordings of a robot onto one of its joints.
+/// Returns the torques at the samples of a joint in the first `share` of a recording, and the index of the first one.
+fn torques(along: &Along, joint: usize, share: f64) -> Option<(usize, Vec<Torques>)> {
+    let channel = along.recording().joints.get(joint)?;
+    let drives = HOLDS.map(|hold| channel.linear_torques(hold));
+    let [held, linear] = &drives;
+    let (held, linear) = (held.as_ref()?, linear.as_ref()?);
+    // Near the ends, polynomials are one-sided and hardly know the acceleration; those near the end of the share depend on
+    // samples beyond it.
+    let width = along.width();
+    let count = (share * channel.times.len() as f64).round() as usize;
+    let used = width..count.saturating_sub(width);
+    let mut own = Vec::with_capacity(used.len());
+    for at in used.clone() {
+        let time = *channel.times.get(at)?;
+        let moment = along.moment(joint, at, time)?;
+        let others = moment.inertia.iter().zip(&moment.acceleration).enumerate();
+        let others = others.filter(|(index, _)| *index != joint).map(|(_, (entry, rate))| entry * rate);
+        own.push(Torques {
+            time,
+            inertia: *moment.inertia.get(joint)?,
+            model: moment.bias + others.sum::<f64>(),
+            drives: [*held.get(at)?, *linear.get(at)?],
+            velocity: *moment.velocity.get(joint)?,
+            acceleration: *moment.acceleration.get(joint)?,
+            position: *moment.position.get(joint)?,
+        });
+    }
+    Some((used.start, own))
+}
+
+/// Projects recordings of a robot, or the first `share` of each, onto one of its joints.
 ///
 /// # Errors
-/// [`RobotError::Short`] for a recording below a second; [`RobotError::NoColumn`] without a torque of the joint;
-/// [`RobotError::Still`] for a joint that does not move; [`RobotError::Model`] from the model.
-pub fn project(model: &dyn Model, recordings: &[Recording], joint: usize) -> Result<Projected, RobotError> {
+/// [`RobotError::NoColumn`] without a torque of the joint; [`RobotError::Still`] for a joint that does not move.
+pub fn project(
+    joints: &[JointInfo],
+    recordings: &[&Along],
+    joint: usize,
+    share: f64,
+) -> Result<Projected, RobotError> {
     // Names are for messages; a joint that is asked for is one of the model.
-    let name = model.joints().get(joint).map(|own| own.name.clone()).unwrap_or_default();
+    let name = joints.get(joint).map(|own| own.name.clone()).unwrap_or_default();
     let mut samples: Vec<Vec<Torques>> = Vec::new();
     let mut from = Vec::new();
-    for recording in recordings {
-        let motion = Motion::of(recording)?;
-        let missing = || RobotError::NoColumn {
-            log: recording.name.clone(),
+    for along in recordings {
+        let (first, own) = torques(along, joint, share).ok_or_else(|| RobotError::NoColumn {
+            log: along.recording().name.clone(),
             quantity: "torque",
             joint: name.clone(),
             columns: "positions only".to_owned(),
             option: format!("{name}=POSITION,TORQUE"),
-        };
-        let channel = recording.joints.get(joint).ok_or_else(missing)?;
-        let torque = channel.torques.as_ref().ok_or_else(missing)?;
-        // Near the ends, cubics are one-sided and hardly know the acceleration.
-        let width = motion.width();
-        let used = width..channel.times.len().saturating_sub(width);
-        let mut own = Vec::with_capacity(used.len());
-        for at in used.clone() {
-            let (Some(time), Some(torque)) = (channel.times.get(at), torque.get(at)) else { continue };
-            let Some(along) = motion.along(joint, at, *time) else { continue };
-            own.push(torques(model, &along, joint, (*time, *torque))?);
-        }
+        })?;
         samples.push(own);
-        from.push(used.start);
+        from.push(first);
     }
     let count = samples.iter().map(Vec::len).sum::<usize>().max(1) as f64;
     let inertia = samples.iter().flatten().map(|own| own.inertia).sum::<f64>() / count;
     let pace = pace(&samples).ok_or(RobotError::Still { joint: name })?;
     let tracking =
         Tracking { inertia, damping: 2.0 * DAMPING_RATIO * inertia * pace, stiffness: inertia * pace * pace };
+    let turns = joints.get(joint).is_some_and(|own| !own.slides);
+    let under = |hold: Hold| {
+        let sample = |own: &Torques| Sample {
+            time: own.time,
+            position: own.position,
+            velocity: own.velocity,
+            acceleration: own.acceleration,
+            unexplained: own.inertia * own.acceleration - own.known(hold),
+        };
+        let known: Vec<Vec<Sample>> = samples.iter().map(|own| own.iter().map(sample).collect()).collect();
+        (hold, drive_noise(&tracking, &known, turns))
+    };
+    let [held, linear] = HOLDS.map(under);
+    let (hold, Drive { density, offsets, friction_alone }) =
+        if held.1.density < linear.1.density { held } else { linear };
     let drive = |own: &Torques| {
-        own.known - (own.inertia - inertia) * own.acceleration
+        own.known(hold) - (own.inertia - inertia) * own.acceleration
             + tracking.damping * own.velocity
             + tracking.stiffness * own.position
     };
-    let sample = |own: &Torques| Sample {
-        time: own.time,
-        position: own.position,
-        velocity: own.velocity,
-        acceleration: own.acceleration,
-        unexplained: own.inertia * own.acceleration - own.known,
+    let root = |of: &dyn Fn(&Torques) -> f64| {
+        let mean = samples.iter().flatten().map(of).sum::<f64>() / count;
+        (samples.iter().flatten().map(|own| (of(own) - mean).powi(2)).sum::<f64>() / count).sqrt()
     };
-    let known: Vec<Vec<Sample>> = samples.iter().map(|own| own.iter().map(sample).collect()).collect();
-    let turns = model.joints().get(joint).is_some_and(|own| !own.slides);
-    let Drive { density, offsets } = drive_noise(&tracking, &known, turns);
+    let scale =
+        Scale { torque: root(&|own| own.drives[1]), speed: root(&|own| own.velocity), friction_alone };
     let parts = samples.iter().zip(from).zip(offsets).map(|((samples, from), offset)| Part {
         from,
         drive: samples.iter().map(|own| drive(own) + offset).collect(),
         offset,
     });
-    Ok(Projected { joint, tracking, drive_noise: density, parts: parts.collect() })
+    Ok(Projected { joint, tracking, drive_noise: density, scale, hold, parts: parts.collect() })
 }

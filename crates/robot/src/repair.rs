@@ -10,7 +10,11 @@ pub struct JointRepair {
     pub damping: Option<f64>,
     /// Dry friction in N m or N; `None` keeps that of the file.
     pub friction: Option<f64>,
-    /// Sentences on what URDF cannot hold.
+    /// Inertia of the rotor in kg m² or kg; `None` keeps that of the file. URDF can hold none.
+    pub armature: Option<f64>,
+    /// Stiffness of a spring that is relaxed at 0, in N m/rad or N/m; `None` keeps that of the file. URDF can hold none.
+    pub stiffness: Option<f64>,
+    /// Sentences on what the file cannot hold.
     pub remarks: Vec<String>,
 }
 
@@ -37,7 +41,7 @@ fn dynamics(text: &str, own: &JointRepair) -> String {
 }
 
 /// Returns the remarks as a comment, which may not hold two hyphens in a row.
-fn comment(remarks: &[String]) -> String {
+pub(crate) fn comment(remarks: &[String]) -> String {
     if remarks.is_empty() {
         return String::new();
     }
@@ -47,7 +51,7 @@ fn comment(remarks: &[String]) -> String {
 /// Returns the text of a model with other damping and friction, one repair for each joint that moves. All else is
 /// as it was.
 #[must_use]
-pub fn repaired(urdf: &Urdf, repairs: &[JointRepair]) -> String {
+pub(crate) fn repaired(urdf: &Urdf, repairs: &[JointRepair]) -> String {
     let mut edits: Vec<(usize, usize, String)> = Vec::new();
     for (JointPlace { element, dynamics: place }, own) in urdf.places.iter().zip(repairs) {
         let changes = own.damping.is_some() || own.friction.is_some();

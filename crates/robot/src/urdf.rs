@@ -4,7 +4,8 @@
 //! program does not read (visuals, transmissions, plug-ins, comments).
 
 use crate::error::RobotError;
-use crate::model::{JointInfo, Model, TreeModel};
+use crate::model::{JointInfo, Model, RepairedModel, TreeModel};
+use crate::repair::{JointRepair, repaired};
 use dynamics::tree::{Body, Inertia, JointMotion, Placement, Tree};
 use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
@@ -89,7 +90,9 @@ impl<'a, 'input> Reader<'a, 'input> {
         let diagonal = |name| self.number(&moments, name);
         let (xx, yy, zz) = (diagonal("ixx")?, diagonal("iyy")?, diagonal("izz")?);
         // Products of inertia are 0 where they are missing.
-        let product = |name| Ok(self.numbers(&moments, name)?.map_or(0.0, |[value]: [f64; 1]| value));
+        let product = |name| {
+            Ok::<f64, RobotError>(self.numbers(&moments, name)?.map_or(0.0, |[value]: [f64; 1]| value))
+        };
         let (xy, xz, yz) = (product("ixy")?, product("ixz")?, product("iyz")?);
         let moments = placement.moments(&[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
         Ok(Inertia { mass, center: placement.origin, moments })
@@ -153,7 +156,7 @@ impl Urdf {
         if !root.has_tag_name("robot") {
             let found = root.tag_name().name();
             let problem = match found {
-                "mujoco" => "this is an MJCF model, which is not read; convert it to URDF".into(),
+                "mujoco" => "this is an MJCF model; name its file with the ending .xml".into(),
                 _ => format!("the outermost element is <{found}>; expected <robot>"),
             };
             return Err(reader.refused(&root, problem));
@@ -212,12 +215,20 @@ impl Model for Urdf {
         self.model.joints()
     }
 
+    fn format(&self) -> &'static str {
+        self.model.format()
+    }
+
     fn mass_matrix(&self, position: &[f64]) -> Result<Vec<Vec<f64>>, RobotError> {
         self.model.mass_matrix(position)
     }
 
     fn bias(&self, position: &[f64], velocity: &[f64]) -> Result<Vec<f64>, RobotError> {
         self.model.bias(position, velocity)
+    }
+
+    fn repaired(&self, repairs: &[JointRepair]) -> Result<Option<RepairedModel>, RobotError> {
+        Ok(Some(RepairedModel { extension: "urdf", text: repaired(self, repairs) }))
     }
 }
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
-use robot::{JointRepair, Model, Urdf, repaired};
+use robot::{JointRepair, Model, Urdf};
 
 const LINK: &str = r#"<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>"#;
 
@@ -62,14 +62,14 @@ fn a_repair_changes_damping_and_friction_and_keeps_all_else() {
     let urdf = Urdf::parse("arm.urdf", &text).unwrap();
     let repairs = [
         JointRepair {
-            damping: None,
             friction: Some(0.25),
             remarks: vec!["Armature: 0.01 kg m^2 -- not here.".into()],
+            ..JointRepair::default()
         },
-        JointRepair { damping: Some(1.5), friction: None, remarks: Vec::new() },
+        JointRepair { damping: Some(1.5), ..JointRepair::default() },
         JointRepair::default(),
     ];
-    let new = repaired(&urdf, &repairs);
+    let new = urdf.repaired(&repairs).unwrap().unwrap().text;
     assert!(new.contains(r#"<dynamics damping="0.1" friction="0.25" extra="x"/><!-- Ringdown: Armature: 0.01 kg m^2 - - not here. -->"#), "{new}");
     let again = Urdf::parse("repaired.urdf", &new).unwrap();
     let joints = again.joints();

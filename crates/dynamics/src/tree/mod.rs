@@ -19,5 +19,5 @@ mod vector;
 pub use algorithms::solved;
 pub use body::{Body, Inertia, JointMotion, Placement};
 pub use error::TreeError;
-pub use rollout::{Acting, State, rollout};
+pub use rollout::{Acting, Mechanism, State, rollout};
 pub use structure::Tree;

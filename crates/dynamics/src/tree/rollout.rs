@@ -51,6 +51,43 @@ pub struct State {
     pub velocity: Vec<f64>,
 }
 
+/// Mechanism that a motion is computed of: whatever gives a mass matrix and bias forces.
+pub trait Mechanism {
+    /// Reason why they cannot be computed.
+    type Error: From<TreeError>;
+
+    /// Returns the names of the joints, in the order of all vectors.
+    fn names(&self) -> Vec<String>;
+
+    /// Computes the rows of the mass matrix, armatures included.
+    ///
+    /// # Errors
+    /// [`Self::Error`].
+    fn mass_matrix(&self, position: &[f64]) -> Result<Vec<Vec<f64>>, Self::Error>;
+
+    /// Computes the torques of gravity, Coriolis and centrifugal forces.
+    ///
+    /// # Errors
+    /// [`Self::Error`].
+    fn bias(&self, position: &[f64], velocity: &[f64]) -> Result<Vec<f64>, Self::Error>;
+}
+
+impl Mechanism for Tree {
+    type Error = TreeError;
+
+    fn names(&self) -> Vec<String> {
+        Tree::names(self).map(str::to_owned).collect()
+    }
+
+    fn mass_matrix(&self, position: &[f64]) -> Result<Vec<Vec<f64>>, TreeError> {
+        Tree::mass_matrix(self, position)
+    }
+
+    fn bias(&self, position: &[f64], velocity: &[f64]) -> Result<Vec<f64>, TreeError> {
+        Tree::bias(self, position, velocity)
+    }
+}
+
 /// One joint's field of forces and hidden states.
 struct Joint {
     field: Field<f64>,
@@ -150,17 +187,20 @@ fn between(from: &[f64], to: &[f64], share: f64) -> Vec<f64> {
 /// # Errors
 /// [`TreeError::Length`] for vectors of another length than the number of joints; [`TreeError::Diverged`];
 /// [`TreeError::NoInertia`] where the mass matrix is singular.
-pub fn rollout(
-    tree: &Tree,
+pub fn rollout<M: Mechanism>(
+    mechanism: &M,
     acting: &[Acting],
     start: &State,
     times: &[f64],
     torques: &[Vec<f64>],
-) -> Result<Vec<Vec<f64>>, TreeError> {
-    tree.check(acting)?;
-    tree.check(&start.velocity)?;
-    torques.iter().try_for_each(|own| tree.check(own))?;
-    let inertias = tree.mass_matrix(&start.position)?;
+) -> Result<Vec<Vec<f64>>, M::Error> {
+    let expected = mechanism.names().len();
+    let lengths = [acting.len(), start.position.len(), start.velocity.len()];
+    let found = lengths.into_iter().chain(torques.iter().map(Vec::len)).find(|found| *found != expected);
+    if let Some(found) = found {
+        return Err(TreeError::Length { expected, found }.into());
+    }
+    let inertias = mechanism.mass_matrix(&start.position)?;
     let mut joints: Vec<Joint> = Vec::with_capacity(acting.len());
     for (at, (acting, row)) in acting.iter().zip(&inertias).enumerate() {
         let state = start.position.get(at).copied().zip(start.velocity.get(at).copied());
@@ -176,10 +216,10 @@ pub fn rollout(
         for at in 0..count {
             let share = (at as f64 + 0.5) / count as f64;
             let torque = between(first, last, share);
-            advance(tree, &mut joints, &mut state, (from + share * (to - from), step), &torque)?;
+            advance(mechanism, &mut joints, &mut state, (from + share * (to - from), step), &torque)?;
         }
         if state.velocity.iter().any(|own| own.is_nan() || own.abs() > FASTEST) {
-            return Err(TreeError::Diverged { time_s: to });
+            return Err(TreeError::Diverged { time_s: to }.into());
         }
         positions.push(state.position.clone());
     }
@@ -187,26 +227,30 @@ pub fn rollout(
 }
 
 /// Moves a state on by one step about a time.
-fn advance(
-    tree: &Tree,
+fn advance<M: Mechanism>(
+    mechanism: &M,
     joints: &mut [Joint],
     state: &mut State,
     (time, step): (f64, f64),
     torque: &[f64],
-) -> Result<(), TreeError> {
+) -> Result<(), M::Error> {
     let drift = |state: &mut State| {
         for (position, velocity) in state.position.iter_mut().zip(&state.velocity) {
             *position += 0.5 * step * velocity;
         }
     };
     drift(state);
-    let mut matrix = tree.mass_matrix(&state.position)?;
+    let mut matrix = mechanism.mass_matrix(&state.position)?;
     for (at, (row, joint)) in matrix.iter_mut().zip(joints.iter()).enumerate() {
         if let Some(own) = row.get_mut(at) {
             *own += joint.inertia;
         }
     }
-    let singular = |at: usize| TreeError::NoInertia { joint: tree.names().nth(at).unwrap_or("").to_owned() };
+    let singular = |at: usize| {
+        // The place is that of a joint.
+        let joint = mechanism.names().into_iter().nth(at).unwrap_or_default();
+        M::Error::from(TreeError::NoInertia { joint })
+    };
     let accelerate = |bias: Vec<f64>, given: &[f64]| {
         let sum: Vec<f64> = given.iter().zip(bias).map(|(given, bias)| given - bias).collect();
         solved(&matrix, sum).map_err(singular)
@@ -222,10 +266,10 @@ fn advance(
         bounds.push(step * bound);
     }
     // Coriolis torques at the speed of the middle of the step.
-    let first = accelerate(tree.bias(&state.position, &state.velocity)?, &given)?;
+    let first = accelerate(mechanism.bias(&state.position, &state.velocity)?, &given)?;
     let middle: Vec<f64> =
         state.velocity.iter().zip(&first).map(|(own, rate)| own + 0.5 * step * rate).collect();
-    let rates = accelerate(tree.bias(&state.position, &middle)?, &given)?;
+    let rates = accelerate(mechanism.bias(&state.position, &middle)?, &given)?;
     let free: Vec<f64> = state.velocity.iter().zip(&rates).map(|(own, rate)| own + step * rate).collect();
     state.velocity = if bounds.iter().any(|bound| *bound > 0.0) {
         let unit = |at: usize| (0..free.len()).map(|row| f64::from(u8::from(row == at))).collect();

@@ -7,13 +7,13 @@ use crate::read::Given;
 use diagnosis::{DiagnosisError, Settings};
 use dynamics::tree::Acting;
 use dynamics::{
-    Active, Coefficients, Coordinate, DynamicsError, KnownEffect, Nominal, NominalSimulator, System,
+    Active, Coefficients, Coordinate, DynamicsError, Hold, KnownEffect, Nominal, NominalSimulator, System,
 };
 use experiment::StatedNominal;
 use export::{equation_latex, equation_text};
 use record::{Fault, Quantity, Record};
 use results::{CalibratedRow, Calibration, Equation, JointRepairRow, TrackingRow, WithInterval};
-use robot::{JointInfo, Model, Projected, Recording, RobotError, Tracking, project};
+use robot::{Along, JointInfo, Projected, RobotError, Scale, Tracking, project};
 use std::f64::consts::TAU;
 
 /// Effects that are no candidates for a joint: they would change the spring and damper that hold its simulator, or
@@ -44,6 +44,10 @@ pub struct JointQuestion {
     pub joint: JointInfo,
     /// Spring and damper that hold its simulator to the measured motion.
     pub tracking: Tracking,
+    /// Behavior of the drive's torque between samples.
+    pub hold: Hold,
+    /// Size of the motion.
+    pub scale: Scale,
     /// Mean of the constant torques that were taken out of the drive, in N m or N.
     pub offset: f64,
     /// Question of the joint as an oscillator.
@@ -60,6 +64,10 @@ pub struct JointAnswer {
     pub tracking: TrackingRow,
     /// Coefficients beside those of the effects.
     pub repair: JointRepairRow,
+    /// Behavior of the drive's torque between samples.
+    pub hold: Hold,
+    /// Size of the motion.
+    pub scale: Scale,
     /// Torques in the joint beside its drive: as given, recalibrated, and repaired.
     pub acting: [Acting; 3],
 }
@@ -78,8 +86,8 @@ impl RobotQuestion {
     ) -> Result<JointQuestion, WorkflowError> {
         let used: Vec<&LoadedRecording> =
             recordings.iter().filter_map(|index| self.recordings.get(*index)).collect();
-        let samples: Vec<Recording> = used.iter().map(|own| begun(&own.recording, share)).collect();
-        let projected = project(&self.model, &samples, joint)?;
+        let along: Vec<&Along> = used.iter().map(|own| &own.along).collect();
+        let projected = project(self.model.joints(), &along, joint, share)?;
         let info = self.model.joints().get(joint).cloned().ok_or_else(|| RobotError::Model {
             quantity: "joint",
             problem: format!("it has no joint {joint}"),
@@ -92,20 +100,9 @@ impl RobotQuestion {
         let question = Question::new(given, stated, self.name.clone())?;
         let count = projected.parts.len().max(1) as f64;
         let offset = projected.parts.iter().map(|part| part.offset).sum::<f64>() / count;
-        Ok(JointQuestion { joint: info, tracking: projected.tracking, offset, question })
+        let Projected { tracking, hold, scale, .. } = projected;
+        Ok(JointQuestion { joint: info, tracking, hold, scale, offset, question })
     }
-}
-
-/// Returns the first part of a recording.
-fn begun(recording: &Recording, share: f64) -> Recording {
-    let mut part = recording.clone();
-    for channel in &mut part.joints {
-        let count = (share * channel.times.len() as f64).round() as usize;
-        channel.times.truncate(count);
-        channel.positions.truncate(count);
-        channel.torques.iter_mut().for_each(|own| own.truncate(count));
-    }
-    part
 }
 
 /// Returns the nominal simulator of a joint, held to the measured motion.
@@ -140,7 +137,7 @@ fn of_part(
     part: &robot::Part,
     stated: &StatedNominal,
 ) -> Result<Given, WorkflowError> {
-    let name = &own.recording.name;
+    let name = &own.along.recording().name;
     let short = || RobotError::Short { log: name.clone(), seconds: 0.0 };
     let loaded = own.joints.get(projected.joint).ok_or_else(short)?;
     let range = part.from..part.from + part.drive.len();
@@ -174,7 +171,14 @@ impl JointQuestion {
     ) -> Result<JointAnswer, WorkflowError> {
         let mut settings = settings.clone();
         settings.without.extend(NOT_OF_A_JOINT.map(str::to_owned));
+        // The drive was computed for this behavior; that of the torque is in it.
+        settings.hold = Some(Hold::Linear);
         let mut answer = self.question.answer_watched(&settings, seed, goes_on)?;
+        for finding in &mut answer.result.measuring_chain.findings {
+            if finding.text.starts_with("for the model, the input") {
+                finding.text = format!("for the model, the torque {}", self.hold.in_words());
+            }
+        }
         let Tracking { inertia, damping, stiffness } = self.tracking;
         let calibration = answer.result.calibration.clone();
         let with_offset = |mut own: JointRepairRow| {
@@ -185,8 +189,8 @@ impl JointQuestion {
         let recalibrated = with_offset(beyond(&calibration, &self.tracking, |row| row.recalibrated));
         let acting = [
             Acting { damping: self.joint.damping, effects: self.known(), ..Acting::default() },
-            acting(&recalibrated, self.recalibrated(&answer)),
-            acting(&repair, answer.found.repaired.effects.clone()),
+            acting(&self.joint, &recalibrated, self.recalibrated(&answer)),
+            acting(&self.joint, &repair, answer.found.repaired.effects.clone()),
         ];
         free(&mut answer, &self.tracking, &repair)?;
         Ok(JointAnswer {
@@ -199,6 +203,8 @@ impl JointQuestion {
             },
             answer,
             repair,
+            hold: self.hold,
+            scale: self.scale,
             acting,
         })
     }
@@ -249,12 +255,14 @@ fn beyond(
 }
 
 /// Returns what acts in a joint by its fitted coefficients; one that is not determined is 0.
-fn acting(repair: &JointRepairRow, effects: Vec<Active>) -> Acting {
+fn acting(joint: &JointInfo, repair: &JointRepairRow, effects: Vec<Active>) -> Acting {
     // The model keeps its own value.
     let value = |own: Option<WithInterval>| own.map_or(0.0, |own| own.value);
     Acting {
-        inertia: value(repair.armature),
-        damping: value(repair.damping),
+        // A file that holds an armature holds none below 0.
+        inertia: value(repair.armature).max(joint.armature.map_or(f64::NEG_INFINITY, |own| -own)),
+        // A damper gives no energy: a value below 0 is an error of the fit, as in the repaired model.
+        damping: value(repair.damping).max(0.0),
         stiffness: value(repair.stiffness),
         torque: value(repair.torque_offset),
         effects,

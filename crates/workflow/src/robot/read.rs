@@ -5,9 +5,10 @@ use crate::logs::logs;
 use crate::read::{Loaded, Reading};
 use record::{Fault, Filter, Unit, extremes};
 use robot::columns::{JointColumns, Stated, find, find_long};
-use robot::{Channel, JointInfo, Model, Recording, RobotError, Urdf};
+use robot::{Along, Channel, JointInfo, Model, Recording, RobotError, Urdf};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Options of a robot's diagnosis beside those of reading.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,8 +26,8 @@ pub struct RobotOptions {
 /// Recording of all joints with its source.
 #[derive(Debug, Clone)]
 pub struct LoadedRecording {
-    /// Samples of all joints.
-    pub recording: Recording,
+    /// Samples of all joints, with the model along their motion.
+    pub along: Along,
     /// The same, joint by joint, with source and clock.
     pub joints: Vec<Loaded>,
     /// `true` if the recording is fitted; otherwise the whole model is checked with it.
@@ -36,7 +37,7 @@ pub struct LoadedRecording {
 /// Recordings of a robot and its model.
 pub struct RobotQuestion {
     /// Model of the robot.
-    pub model: Urdf,
+    pub model: Arc<dyn Model>,
     /// Name of the model's file.
     pub name: String,
     /// Recordings, in the order given, those to check last.
@@ -68,17 +69,30 @@ impl RobotQuestion {
             problem: format!("it cannot be read: {error}"),
         })?;
         let model = Urdf::parse(&name, &text)?.with_armatures(&options.armatures)?;
+        Self::of(Arc::new(model), name, records, options, reading)
+    }
+
+    /// Reads recordings of a robot whose model is there already; `name` is its name in messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn of(
+        model: Arc<dyn Model>,
+        name: String,
+        records: &[PathBuf],
+        options: &RobotOptions,
+        reading: &Reading,
+    ) -> Result<Self, WorkflowError> {
+        let asked = asked(model.joints(), &options.joints)?;
         let mut recordings: Vec<LoadedRecording> = Vec::new();
         for (paths, fitted) in [(records, true), (&options.check, false)] {
             for path in paths {
                 for log in logs(path)? {
-                    recordings.push(load(&log, &model, options, (reading, fitted))?);
+                    recordings.push(load(&log, &*model, (options, &asked), (reading, fitted))?);
                 }
             }
         }
         check_distinct(&recordings)?;
-        let asked = asked(model.joints(), &options.joints)?;
-        check_usable(&recordings, model.joints(), &asked)?;
         Ok(Self { model, name, recordings, asked })
     }
 }
@@ -100,34 +114,33 @@ fn asked(joints: &[JointInfo], names: &[String]) -> Result<Vec<usize>, WorkflowE
     Ok(asked)
 }
 
-/// Checks that recordings last long enough and hold the torques of the joints to diagnose.
+/// Checks that a recording lasts long enough and holds the torques of the joints to diagnose.
 fn check_usable(
-    recordings: &[LoadedRecording],
+    recording: &Recording,
+    loaded: &[Loaded],
     joints: &[JointInfo],
     asked: &[usize],
-) -> Result<(), WorkflowError> {
-    for LoadedRecording { recording, joints: loaded, .. } in recordings {
-        recording.check_length()?;
-        let lacks = |index: &&usize| recording.joints.get(**index).is_some_and(|own| own.torques.is_none());
-        if let Some(joint) = asked.iter().find(lacks).and_then(|index| joints.get(*index)) {
-            return Err(WorkflowError::Robot(RobotError::NoColumn {
-                log: recording.name.clone(),
-                quantity: "torque",
-                joint: joint.name.clone(),
-                // A recording has at least one joint.
-                columns: loaded.first().map(|own| own.columns.clone()).unwrap_or_default(),
-                option: format!("{}=POSITION,TORQUE", joint.name),
-            }));
-        }
+) -> Result<(), RobotError> {
+    recording.check_length()?;
+    let lacks = |index: &&usize| recording.joints.get(**index).is_some_and(|own| own.torques.is_none());
+    match asked.iter().find(lacks).and_then(|index| joints.get(*index)) {
+        None => Ok(()),
+        Some(joint) => Err(RobotError::NoColumn {
+            log: recording.name.clone(),
+            quantity: "torque",
+            joint: joint.name.clone(),
+            // A recording has at least one joint.
+            columns: loaded.first().map(|own| own.columns.clone()).unwrap_or_default(),
+            option: format!("{}=POSITION,TORQUE", joint.name),
+        }),
     }
-    Ok(())
 }
 
 fn check_distinct(recordings: &[LoadedRecording]) -> Result<(), WorkflowError> {
     let digest = |own: &LoadedRecording| own.joints.first().map(|joint| joint.source.digest.clone());
     for (at, one) in recordings.iter().enumerate() {
         if let Some(other) = recordings.iter().skip(at + 1).find(|other| digest(other) == digest(one)) {
-            let [first, second] = [one, other].map(|own| own.recording.name.clone());
+            let [first, second] = [one, other].map(|own| own.along.recording().name.clone());
             // Recordings have at least one joint.
             return Err(WorkflowError::SameRecord { first, second, digest: digest(one).unwrap_or_default() });
         }
@@ -137,8 +150,8 @@ fn check_distinct(recordings: &[LoadedRecording]) -> Result<(), WorkflowError> {
 
 fn load(
     path: &Path,
-    model: &Urdf,
-    options: &RobotOptions,
+    model: &dyn Model,
+    (options, asked): (&RobotOptions, &[usize]),
     (reading, fitted): (&Reading, bool),
 ) -> Result<LoadedRecording, WorkflowError> {
     let name = path.display().to_string();
@@ -172,7 +185,9 @@ fn load(
         channels.push(Channel { times, positions: loaded.record.values().to_vec(), torques });
         joints.push(loaded);
     }
-    Ok(LoadedRecording { recording: Recording { name, joints: channels }, joints, fitted })
+    let recording = Recording { name, joints: channels };
+    check_usable(&recording, &joints, model.joints(), asked)?;
+    Ok(LoadedRecording { along: Along::of(model, recording)?, joints, fitted })
 }
 
 fn places(

@@ -1,12 +1,13 @@
 //! Results of a robot's diagnosis, and its repaired model.
 
+use super::identifiable::identifiable;
 use super::joint::JointAnswer;
 use super::read::RobotQuestion;
 use results::{
-    ClosedLoopRow, FailedCase, IdentifiableRow, JOINTS_SCHEMA, JointErrorRow, JointRow, JointsResult,
-    RecordingRow, WithInterval,
+    ClosedLoopRow, FailedCase, JOINTS_SCHEMA, JointErrorRow, JointRow, JointsResult, RecordingRow,
+    WithInterval,
 };
-use robot::{JointRepair, Model, repaired};
+use robot::{JointRepair, RepairedModel, RobotError};
 
 /// Smallest part of a joint's inertia that an armature is worth a remark for.
 const NOTED: f64 = 1e-3;
@@ -34,10 +35,10 @@ impl RobotQuestion {
         });
         let recordings = self.recordings.iter().filter_map(|own| {
             let first = own.joints.first()?;
-            let channel = own.recording.joints.first()?;
+            let channel = own.along.recording().joints.first()?;
             let (from, to) = channel.times.first().zip(channel.times.last())?;
             Some(RecordingRow {
-                path: own.recording.name.clone(),
+                path: own.along.recording().name.clone(),
                 digest: first.source.digest.clone(),
                 duration_s: to - from,
                 samples: channel.times.len(),
@@ -57,15 +58,17 @@ impl RobotQuestion {
         }
     }
 
-    /// Returns the model as URDF with damping and friction as found.
-    #[must_use]
-    pub fn repaired_urdf(&self, answers: &[JointAnswer]) -> String {
+    /// Returns the model's file with the numbers of its joints as found; `None` for a model that is no file.
+    ///
+    /// # Errors
+    /// [`RobotError`] from a model that writes itself.
+    pub fn repaired(&self, answers: &[JointAnswer]) -> Result<Option<RepairedModel>, RobotError> {
         let of = |joint: &robot::JointInfo| {
             let answer = answers.iter().find(|own| own.joint.name == joint.name);
-            answer.map_or_else(JointRepair::default, repair)
+            answer.map_or_else(JointRepair::default, |own| repair(own, self.model.format()))
         };
         let repairs: Vec<JointRepair> = self.model.joints().iter().map(of).collect();
-        repaired(&self.model, &repairs)
+        self.model.repaired(&repairs)
     }
 }
 
@@ -89,35 +92,13 @@ fn pooled(closed_loop: &ClosedLoopRow, joint: usize) -> Option<JointErrorRow> {
     })
 }
 
-fn is_told(own: &Option<WithInterval>) -> bool {
-    own.is_some_and(|own| own.interval_95.iter().all(|end| end.is_finite()))
+/// Returns `true` for a number that is not 0 by its interval.
+fn excludes_zero(own: &WithInterval) -> bool {
+    own.interval_95[0] * own.interval_95[1] > 0.0
 }
 
-/// Lists what the recordings tell of a joint beside the effects.
-fn identifiable(own: &JointAnswer) -> Vec<IdentifiableRow> {
-    let rows = [
-        ("armature", &own.repair.armature, "motion of this joint in fast and in slow turns"),
-        ("damping", &own.repair.damping, "motion of this joint at two speeds or more"),
-        (
-            "torque_offset",
-            &own.repair.torque_offset,
-            "motion of this joint in both directions, several times",
-        ),
-    ];
-    let row = |(quantity, found, record): (&str, &Option<WithInterval>, &str)| {
-        let told = is_told(found);
-        IdentifiableRow {
-            quantity: quantity.to_owned(),
-            joint: own.joint.name.clone(),
-            told,
-            record: if told { String::new() } else { record.to_owned() },
-        }
-    };
-    rows.into_iter().map(row).collect()
-}
-
-/// Returns the numbers and remarks of one joint for the URDF.
-fn repair(own: &JointAnswer) -> JointRepair {
+/// Returns the numbers and remarks of one joint for a file of a format.
+fn repair(own: &JointAnswer, format: &str) -> JointRepair {
     let (turns, torque) = if own.joint.slides { ("kg", "N") } else { ("kg m^2", "N m") };
     let significant = |value: f64| format!("{value:.4e}").parse::<f64>().unwrap_or(value);
     let mut remarks = Vec::new();
@@ -130,28 +111,35 @@ fn repair(own: &JointAnswer) -> JointRepair {
                 let values = active.effect().description().parameters.iter().zip(active.values());
                 let values: Vec<String> =
                     values.map(|(own, value)| format!("{} {}", own.name, significant(*value))).collect();
-                remarks.push(format!("URDF cannot hold {id} ({}).", values.join(", ")));
+                remarks.push(format!("{format} cannot hold {id} ({}).", values.join(", ")));
             }
         }
     }
     let damping = own.answer.repaired.system.nominal().damping();
     let damping = own.repair.damping.map(|_| significant(damping));
-    if let Some(armature) =
-        own.repair.armature.filter(|found| found.value.abs() > NOTED * own.tracking.inertia)
-    {
+    let held = own.joint.armature.map(|known| significant(known + own.acting[2].inertia));
+    let noted = |found: &WithInterval| held.is_none() && found.value.abs() > NOTED * own.tracking.inertia;
+    if let Some(armature) = own.repair.armature.filter(noted) {
         remarks.push(format!(
-            "URDF cannot hold an armature of {} {turns} (95 % interval {} to {}).",
+            "{format} cannot hold an armature of {} {turns} (95 % interval {} to {}).",
             significant(armature.value),
             significant(armature.interval_95[0]),
             significant(armature.interval_95[1])
         ));
     }
-    if let Some(offset) = own.repair.torque_offset.filter(|own| own.interval_95[0] * own.interval_95[1] > 0.0)
-    {
+    let spring = own.joint.stiffness.map(|known| significant(known + own.acting[2].stiffness));
+    if let Some(found) = own.repair.stiffness.filter(|found| spring.is_none() && excludes_zero(found)) {
+        let unit = if own.joint.slides { "N/m" } else { "N m/rad" };
+        remarks.push(format!(
+            "{format} does not hold the spring of {} {unit} about 0 that the fit found.",
+            significant(found.value)
+        ));
+    }
+    if let Some(offset) = own.repair.torque_offset.filter(excludes_zero) {
         remarks.push(format!(
             "The torque sensor is off by {} {torque}, or a constant torque of that size acts.",
             significant(offset.value)
         ));
     }
-    JointRepair { damping, friction, remarks }
+    JointRepair { damping, friction, armature: held, stiffness: spring, remarks }
 }

@@ -1,5 +1,6 @@
-//! `trainer diagnose LOG… --nominal ARM.urdf`: a robot of several joints.
+//! `trainer diagnose LOG… --nominal ARM.urdf` or `ARM.xml`: a robot of several joints.
 
+mod interpreter;
 mod summary;
 
 use super::arguments::DiagnoseArguments;
@@ -11,24 +12,20 @@ use crate::outcome::Outcome;
 use crate::terminal::console;
 use crate::terminal::interrupt::{self, Saving};
 use crate::terminal::progress::Progress;
+use ::robot::RobotError;
 use ::robot::columns::Stated;
-use ::robot::{Model, RobotError};
-use rayon::prelude::*;
-use results::{FailedCase, JointsResult};
+use results::FailedCase;
 use runs::{RunFolder, default_root};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::Path;
-use std::time::Instant;
+use std::sync::Arc;
 use workflow::WorkflowError;
-use workflow::robot::{JointAnswer, JointQuestion, RobotOptions, RobotQuestion};
+use workflow::robot::{JointFate, RobotAnswer, RobotOptions, RobotQuestion};
 
 /// Returns `true` if a nominal simulator is the model of a robot.
 pub(super) fn is_robot(nominal: &Path) -> bool {
     nominal.extension().is_some_and(|own| own.eq_ignore_ascii_case("urdf") || own.eq_ignore_ascii_case("xml"))
 }
-
-/// Outcome of one joint.
-type Fate = Result<(JointQuestion, Value, JointAnswer), FailedCase>;
 
 /// Reads the options of a robot.
 fn options(arguments: &DiagnoseArguments) -> Result<RobotOptions, TrainerError> {
@@ -56,14 +53,30 @@ fn options(arguments: &DiagnoseArguments) -> Result<RobotOptions, TrainerError> 
     })
 }
 
+/// Returns `true` for the text of an MJCF model, which an `.xml` holds as well as a URDF.
+fn is_mjcf(model: &Path) -> bool {
+    let text = std::fs::read_to_string(model);
+    model.extension().is_some_and(|own| own.eq_ignore_ascii_case("xml"))
+        && text.is_ok_and(|own| !own.contains("<robot"))
+}
+
+/// Reads the recordings and the model: an MJCF model through Python.
+fn question(arguments: &DiagnoseArguments, model: &Path) -> Result<RobotQuestion, TrainerError> {
+    let (options, reading) = (options(arguments)?, arguments.reading.plain());
+    if !is_mjcf(model) {
+        return Ok(RobotQuestion::read(&arguments.records, model, &options, &reading)?);
+    }
+    let mjcf = interpreter::mjcf(model).and_then(|own| own.with_armatures(&options.armatures));
+    let mjcf = Arc::new(mjcf.map_err(WorkflowError::Robot)?);
+    Ok(RobotQuestion::of(mjcf, model.display().to_string(), &arguments.records, &options, &reading)?)
+}
+
 /// Diagnoses every joint and checks the whole model. A joint that fails is reported, and the others continue.
 pub(super) fn robot(arguments: &DiagnoseArguments, model: &Path) -> Result<Outcome, TrainerError> {
-    let start = Instant::now();
     if let Some(path) = &arguments.out {
         RunFolder::check_free(path)?;
     }
-    let question =
-        RobotQuestion::read(&arguments.records, model, &options(arguments)?, &arguments.reading.plain())?;
+    let question = question(arguments, model)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
@@ -71,73 +84,32 @@ pub(super) fn robot(arguments: &DiagnoseArguments, model: &Path) -> Result<Outco
     interrupt::watch_impatiently()?;
     let quiet = arguments.output.quiet || arguments.output.json;
     let progress = Progress::over(question.asked.len() as u64, "joints", quiet);
-    let fates: Vec<Fate> = pool.install(|| {
-        let diagnosed = |joint: &usize| {
-            let fate = diagnosed(arguments, &question, *joint, &progress);
-            progress.one_of_many_done();
-            fate
-        };
-        question.asked.par_iter().map(diagnosed).collect()
-    });
-    progress.finish();
-    let (mut parts, mut answers, mut failed) = (Vec::new(), Vec::new(), Vec::new());
-    for fate in fates {
-        match fate {
-            Ok((question, asked, answer)) => {
-                parts.push((question, asked));
-                answers.push(answer);
-            }
-            Err(case) => failed.push(case),
+    let done = |fate: &JointFate| {
+        if let Err(FailedCase { id, message }) = fate {
+            progress.aside(|| console::error(&format!("{id}: {message}")));
         }
-    }
-    let mut notes = Vec::new();
-    let checked = pool.install(|| question.closed_loop(&answers, &arguments.settings(), arguments.seed));
-    let closed_loop =
-        checked.map_err(|error| notes.push(format!("The whole model was not run: {error}."))).ok();
-    let result = question.result(&answers, failed, closed_loop, (notes, start.elapsed().as_secs_f64()));
+        progress.one_of_many_done();
+    };
+    let answer = pool.install(|| question.answer(&arguments.settings(), arguments.seed, &|_| true, &done));
+    progress.finish();
     let _saving = Saving::begin();
     let folder = match &arguments.out {
         Some(path) => RunFolder::create_at(path)?,
         None => RunFolder::create(&default_root(), "robot")?,
     };
-    keep(&folder, &question, (&parts, &answers), &result, pool.current_num_threads())?;
-    arguments.output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(Outcome::of(false, result.failed.is_empty()))
-}
-
-fn diagnosed(
-    arguments: &DiagnoseArguments,
-    question: &RobotQuestion,
-    joint: usize,
-    progress: &Progress,
-) -> Fate {
-    let fitted: Vec<usize> = (0..question.recordings.len())
-        .filter(|index| question.recordings.get(*index).is_some_and(|own| own.fitted))
-        .collect();
-    let answer = || -> Result<_, WorkflowError> {
-        let own = question.joint(joint, &fitted, 1.0)?;
-        let asked = kept::asked(arguments, &own.question);
-        let answer = own.answer(&arguments.settings(), arguments.seed, &|_| true)?;
-        Ok((own, asked, answer))
-    };
-    answer().map_err(|error| {
-        // The index is that of a joint of the model.
-        let id = question.model.joints().get(joint).map(|own| own.name.clone()).unwrap_or_default();
-        let message = error.to_string();
-        progress.aside(|| console::error(&format!("{id}: {message}")));
-        FailedCase { id, message }
-    })
+    keep(&folder, arguments, &answer, pool.current_num_threads())?;
+    arguments.output.print(&answer.result, || summary::summary(&answer, folder.path()))?;
+    Ok(Outcome::of(false, answer.result.failed.is_empty()))
 }
 
 /// Writes the folder of a robot, with a folder for each joint, and the report last.
 fn keep(
     folder: &RunFolder,
-    question: &RobotQuestion,
-    (parts, answers): (&[(JointQuestion, Value)], &[JointAnswer]),
-    result: &JointsResult,
+    arguments: &DiagnoseArguments,
+    RobotAnswer { joints, result, repaired }: &RobotAnswer,
     threads: usize,
 ) -> Result<(), TrainerError> {
-    for ((own, asked), answer) in parts.iter().zip(answers) {
+    for (own, answer) in joints {
         let name: String = own
             .joint
             .name
@@ -145,11 +117,14 @@ fn keep(
             .map(|sign| if sign.is_alphanumeric() || "-_.".contains(sign) { sign } else { '_' })
             .collect();
         let joint = RunFolder::create_at(&folder.path().join(name.trim_start_matches('.')))?;
-        kept::keep(&joint, &own.question, asked, &answer.answer, threads)?;
+        let asked = kept::asked(arguments, &own.question);
+        kept::keep(&joint, &own.question, &asked, &answer.answer, threads)?;
     }
     let digests: Vec<&str> = result.recordings.iter().map(|own| own.digest.as_str()).collect();
     folder.write_json("environment.json", &Environment::new(threads, &digests.join(" ")))?;
-    folder.write("repaired.urdf", question.repaired_urdf(answers).as_bytes())?;
+    if let Some(model) = repaired {
+        folder.write(&format!("repaired.{}", model.extension), model.text.as_bytes())?;
+    }
     folder.write_json("joints.json", result)?;
     folder.record_event("end", &json!({ "joints": result.joints.len() }))?;
     write_report(folder)?;

@@ -4,9 +4,13 @@ use crate::terminal::table::table;
 use report::format::{self, estimate, quantity, significant, unit};
 use results::{JointErrorRow, JointRow, JointsResult};
 use std::path::Path;
+use workflow::robot::RobotAnswer;
 
 /// Summarizes the joints: a table of what is missing, one of the whole model's errors, and files.
-pub(super) fn summary(result: &JointsResult, folder: &Path) -> String {
+pub(super) fn summary(RobotAnswer { result, repaired, .. }: &RobotAnswer, folder: &Path) -> String {
+    let repaired = repaired.as_ref().map_or_else(String::new, |own| {
+        format!("\nrepaired model: {}/repaired.{}", folder.display(), own.extension)
+    });
     let failed: Vec<String> =
         result.failed.iter().map(|case| format!("no answer for {}: {}", case.id, case.message)).collect();
     let parts = [
@@ -15,7 +19,7 @@ pub(super) fn summary(result: &JointsResult, folder: &Path) -> String {
         closed_loop(result),
         [failed, result.notes.clone()].concat().join("\n"),
         format!(
-            "took: {:.2} s\nreport: {path}/report.html\neach joint: {path}/<joint>/report.html\nrepaired model: {path}/repaired.urdf",
+            "took: {:.2} s\nreport: {path}/report.html\neach joint: {path}/<joint>/report.html{repaired}",
             result.seconds,
             path = folder.display()
         ),
