@@ -201,7 +201,7 @@ fn an_mjcf_is_read_through_python_and_written_back() {
     assert!(repaired.contains("frictionloss=\"0.1"), "{repaired}");
 }
 
-/// What the interpreter says reaches the user as one message, and so does its absence.
+/// A message of the interpreter reaches the user as one message, and so does its absence.
 #[cfg(unix)]
 #[test]
 fn an_mjcf_without_python_or_its_mujoco_is_refused_with_one_message() {

@@ -94,7 +94,9 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let moves = between([first.at, last.at]) - held.sum::<f64>();
     let is_most = found.iter().map(|swing| between(swing.samples)).sum::<f64>() > MOST * moves;
     let is_whole = found.iter().any(|swing| swing.samples == [0, values.len() - 1]);
-    let is_swing = breaks.len() > MANY && half_swings.regular_outside(&found) > SWINGS_OUTSIDE
+    // Each strike breaks the motion twice: at its last turning point before, and at the first one after.
+    let is_swing = breaks.len() > MANY.max(2 * found.len())
+        && half_swings.regular_outside(&found) > SWINGS_OUTSIDE
         || half_swings.goes_on_after(&found);
     if is_most && !is_whole && !is_swing { found } else { Vec::new() }
 }
@@ -416,6 +418,32 @@ mod tests {
         });
         let found = parts(&held);
         assert!(found.len() == 1 && (found[0][0] - 20.0).abs() < 0.15 && found[0][1] > 29.9, "{found:?}");
+    }
+
+    /// Regression: more than three strikes made more breaks than a hand, and the swings were read as one.
+    #[test]
+    fn every_strike_begins_a_free_swing() {
+        let struck =
+            record(60.0, 1e-4, |time| (time % 12.0 / 3.0).exp().recip() * (6.0 * (time % 12.0)).sin());
+        let found = parts(&struck);
+        assert_eq!(found.len(), 5, "{found:?}");
+        for (number, [from, _]) in found.iter().enumerate() {
+            let strike = 12.0 * number as f64;
+            assert!((strike - 0.1..strike + 0.7).contains(from), "{found:?}");
+        }
+    }
+
+    /// A step and a release of a well-damped system after a rest; from its first sample on, a slow return is whole.
+    #[test]
+    fn a_motion_of_few_half_swings_begins_after_the_rest() {
+        let returned = |time: f64| (-2.0 * time).exp() * ((5.0 * time).cos() + 0.4 * (5.0 * time).sin());
+        for held in [0.0, 1.0] {
+            let motion = |time: f64| if time < 3.0 { held } else { held - 1.0 + returned(time - 3.0) };
+            let found = parts(&record(12.0, 1e-3, motion));
+            assert!(found.len() == 1 && (found[0][0] - 3.0).abs() < 0.1 && found[0][1] > 11.9, "{found:?}");
+        }
+        let slow = |time: f64| (1.0 + 2.0 * time) * (-2.0 * time).exp();
+        assert!(parts(&record(12.0, 0.01, slow)).is_empty());
     }
 
     /// Beating, growth, dry friction, a shift of the rest position and a swing over many decades are free.

@@ -25,6 +25,7 @@ mod lattice;
 mod line;
 mod look;
 mod lost;
+mod names;
 mod options;
 mod parsed;
 mod reading;

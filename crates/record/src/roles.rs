@@ -3,6 +3,7 @@
 use crate::columns::CsvColumns;
 use crate::error::Fault;
 use crate::heading::Heading;
+use crate::names::{ACCELERATIONS, INPUTS, LENGTHS, OF_VECTORS, POSITIONS, TIMES, TORQUES, VELOCITIES};
 use crate::options::ReadOptions;
 use crate::reading::Coordinate;
 use crate::record::Quantity;
@@ -40,91 +41,13 @@ const BY_SWING: &str = "by its swing";
 /// Factor by which one column has to swing farther than another to be taken against the order of names.
 const FARTHER: f64 = 2.0;
 
-/// Names of time columns, most reliable first.
-const TIMES: &[&str] = &[
-    "time",
-    "t",
-    "timestamp",
-    "stamp",
-    "elapsed",
-    "seconds",
-    "second",
-    "secs",
-    "sec",
-    "millis",
-    "milliseconds",
-    "ms",
-    "micros",
-    "microseconds",
-    "us",
-    "nanos",
-    "ns",
-    "zeit",
-    "datetime",
-    "date",
-    "clock",
-];
-/// Names of position columns, most reliable first. Of a file's columns, the one with the earliest of these
-/// names is taken.
-const POSITIONS: &[&str] = &[
-    "angle",
-    "theta",
-    "displacement",
-    "position",
-    "pos",
-    "phi",
-    "winkel",
-    "weg",
-    "auslenkung",
-    "deflection",
-    "travel",
-    "roll",
-    "pitch",
-    "yaw",
-    "q",
-    "encoder",
-    "enc",
-    "y",
-    "x",
-    "z",
-    "state",
-    "measured",
-    "ist",
-    "istwert",
-];
-const VELOCITIES: &[&str] = &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot"];
 /// Name that requests no input, unless a column has this name.
 const NO_INPUT: &str = "none";
-const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
-const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
-const INPUTS: &[&str] = &[
-    "command",
-    "cmd",
-    "u",
-    "input",
-    "voltage",
-    "setpoint",
-    "target",
-    "action",
-    "desired",
-    "soll",
-    "sollwert",
-    "current",
-    "drive",
-    "excitation",
-    "exciter",
-    "shaker",
-];
-/// Words in the names of lengths, for columns without a unit.
-const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];
 
 /// Returns the position in a list of the first of its words that a name contains.
 fn rank(heading: &Heading, list: &[&str]) -> Option<usize> {
     list.iter().position(|word| heading.has(word))
 }
-
-/// Words for the length of a vector whose components are columns too.
-const OF_VECTORS: &[&str] = &["absolute", "abs", "magnitude", "norm", "betrag", "total"];
 
 fn drives(heading: &Heading) -> bool {
     rank(heading, TORQUES).or_else(|| rank(heading, INPUTS)).is_some()
