@@ -90,6 +90,11 @@ fn friction_in_one_joint_is_named_there_and_written_back() {
             assert!(folder.path().join(name).join(file).is_file(), "{name}/{file}");
         }
     }
+    assert_eq!(found["recordings"][0]["agrees"], true);
+    let told = found["identifiable"].as_array().unwrap().iter();
+    let told: Vec<&str> =
+        told.filter(|own| own["told"] == true).map(|own| own["quantity"].as_str().unwrap()).collect();
+    assert_eq!(told.iter().filter(|own| **own == "dry_friction").count(), 2, "{told:?}");
     assert!(found["closed_loop"]["held_out"].as_str().unwrap().contains("last third"));
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(page.contains("href=\"elbow/report.html\"") && page.contains("The whole model"), "{page}");
@@ -172,6 +177,37 @@ fn what_cannot_be_a_robots_recording_is_refused_with_one_message() {
     refused(&short, &model, &[], "lasts 0.7");
 }
 
+/// A second recording of the arm with twice the friction differs in nothing else.
+#[test]
+fn recordings_that_disagree_are_named_with_what_differs() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [log, model] = recorded(scratch.path());
+    let text = std::fs::read_to_string(&log).unwrap();
+    // A torque of 0.1 N m against the motion of the elbow that the drive adds acts as friction less.
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(2)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let mut changed: String = text.lines().take(2).map(|line| format!("{line}\n")).collect();
+    for (at, row) in rows.iter().enumerate() {
+        let [before, after] = [at.saturating_sub(10), (at + 10).min(rows.len() - 1)].map(|at| rows[at][2]);
+        let torque = row[4] + 0.1 * (after - before).signum();
+        writeln!(changed, "{},{},{},{},{torque}", row[0], row[1], row[2], row[3]).unwrap();
+    }
+    let other = scratch.path().join("other.csv");
+    std::fs::write(&other, changed).unwrap();
+    let other = other.to_str().unwrap();
+    let (_, found, _folder) = result(&["diagnose", &log, other, "--nominal", &model, "--joint", "elbow"]);
+    for recording in found["recordings"].as_array().unwrap() {
+        assert_eq!(recording["agrees"], false, "{recording}");
+        assert!(
+            recording["differs_in"].as_array().unwrap().contains(&"elbow: dry_friction".into()),
+            "{recording}"
+        );
+    }
+}
+
 /// The arm as MJCF.
 const MJCF: &str = r#"<mujoco><worldbody>
 <body><joint name="shoulder" axis="0 1 0"/><inertial pos="0 0 -0.25" mass="0.8" diaginertia="0.006 0.006 0.001"/>
@@ -201,7 +237,7 @@ fn an_mjcf_is_read_through_python_and_written_back() {
     assert!(repaired.contains("frictionloss=\"0.1"), "{repaired}");
 }
 
-/// A message of the interpreter reaches the user as one message, and so does its absence.
+/// Messages of the interpreter reach the user as one line, and so does its absence.
 #[cfg(unix)]
 #[test]
 fn an_mjcf_without_python_or_its_mujoco_is_refused_with_one_message() {

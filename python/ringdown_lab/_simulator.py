@@ -88,7 +88,10 @@ class MuJoCo:
         """Positions at the times of ``inputs``: times, and the torques of all joints, which change linearly in between."""
         model, data, mujoco = self._model, self._mujoco.MjData(self._model), self._mujoco
         rows = [parameters[name] for name in self.names]
-        of = lambda key: np.array([row[key] for row in rows])  # noqa: E731
+
+        def of(key: str) -> Any:
+            return np.array([row[key] for row in rows])
+
         kept = model.dof_armature.copy(), model.opt.timestep
         times, torques = np.asarray(inputs[0]), np.asarray(inputs[1])
         stiffness, torque = of("stiffness"), of("torque")
@@ -147,16 +150,18 @@ def answer(model: Any, question: str) -> str:
     names = list(model.names)
     count = len(names)
     if asked["do"] == "describe":
-        number = lambda key: getattr(model, key, None) or [0.0] * count  # noqa: E731
         keys = ("damping", "friction", "armature", "stiffness")
-        columns = [getattr(model, "slides", None) or [False] * count, *(number(key) for key in keys)]
+        columns = [getattr(model, "slides", None) or [False] * count, *(getattr(model, key, None) or [0.0] * count for key in keys)]
         joints = [
             {"name": name, "slides": bool(slides), **{key: float(value) for key, value in zip(keys, values, strict=True)}}
             for name, slides, *values in zip(names, *columns, strict=True)
         ]
         return json.dumps({"joints": joints, "rollout": hasattr(model, "rollout")})
     if asked["do"] == "along":
-        both = getattr(model, "_at", None) or (lambda q, v: (model.mass_matrix(q), model.bias(q, v)))
+
+        def both(q: Any, v: Any) -> tuple[Any, Any]:
+            return model._at(q, v) if isinstance(model, MuJoCo) else (model.mass_matrix(q), model.bias(q, v))
+
         mass, bias = [], []
         for q, v in zip(asked["positions"], asked["velocities"], strict=True):
             own = both(np.array(q), np.array(v))

@@ -100,6 +100,17 @@ pub struct ClosedLoopRow {
     pub held_out: String,
 }
 
+/// Start of a run of the whole model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunStartRow {
+    /// Time in the recording, in seconds.
+    pub time_s: f64,
+    /// Measured and smoothed positions of all joints, in rad or m.
+    pub position: Vec<f64>,
+    /// Speeds of all joints, per second.
+    pub velocity: Vec<f64>,
+}
+
 /// Errors of the whole model on one recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClosedLoopRecording {
@@ -107,6 +118,8 @@ pub struct ClosedLoopRecording {
     pub path: String,
     /// Number of runs.
     pub runs: usize,
+    /// Start of each run.
+    pub starts: Vec<RunStartRow>,
     /// Errors of each joint, in the model's order.
     pub joints: Vec<JointErrorRow>,
 }
@@ -137,4 +150,8 @@ pub struct RecordingRow {
     pub samples: usize,
     /// `true` if it was fitted; otherwise the whole model was checked with it.
     pub fitted: bool,
+    /// `true` if no quantity of a joint differs from that of the other recordings by more than chance.
+    pub agrees: bool,
+    /// Quantities that differ, such as `elbow: damping`.
+    pub differs_in: Vec<String>,
 }

@@ -52,7 +52,7 @@ pub use fleet::{FLEET_SCHEMA, FleetCase, FleetClass, FleetGroup, FleetNumber, Fl
 pub use interval::WithInterval;
 pub use joints::{
     ClosedLoopRecording, ClosedLoopRow, IdentifiableRow, JOINTS_SCHEMA, JointErrorRow, JointRepairRow,
-    JointRow, JointsResult, RecordingRow, TrackingRow,
+    JointRow, JointsResult, RecordingRow, RunStartRow, TrackingRow,
 };
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{

@@ -5,7 +5,7 @@ use crate::error::RobotError;
 use crate::model::{JointInfo, Model};
 use crate::recording::Recording;
 use dynamics::Hold;
-use dynamics::tree::{Acting, TreeError};
+use dynamics::tree::{Acting, State, TreeError};
 use std::ops::Range;
 
 /// Errors of a model at one joint.
@@ -32,6 +32,8 @@ pub struct ClosedLoop {
     pub joints: Option<Vec<JointError>>,
     /// Number of runs.
     pub runs: usize,
+    /// Times in seconds at which they start, and the states there.
+    pub starts: Vec<(f64, State)>,
 }
 
 /// Times and torques of one joint, as values that change linearly.
@@ -79,7 +81,9 @@ pub fn closed_loop(
 ) -> Result<ClosedLoop, RobotError> {
     let recording = along.recording();
     let torques = torques(recording, model.joints(), holds)?;
-    let Some(first) = recording.joints.first() else { return Ok(ClosedLoop { joints: None, runs: 0 }) };
+    let Some(first) = recording.joints.first() else {
+        return Ok(ClosedLoop { joints: None, runs: 0, starts: Vec::new() });
+    };
     let width = along.width();
     let count = first.times.len();
     let from = ((part.start * count as f64) as usize).max(width);
@@ -87,6 +91,7 @@ pub fn closed_loop(
     let times = first.times.get(from..to).unwrap_or_default();
     let mut errors = vec![JointError::default(); model.joints().len()];
     let mut runs = 0;
+    let mut starts = Vec::new();
     let mut at = 0;
     while let Some(&begin) = times.get(at) {
         let end = at + times.get(at..).unwrap_or_default().partition_point(|time| *time <= begin + span);
@@ -101,11 +106,12 @@ pub fn closed_loop(
             torques.iter().map(|(times, own)| interpolated(times, own, time).unwrap_or(0.0)).collect()
         };
         let start = along.state(begin);
+        starts.push((begin, start.clone()));
         let inputs: Vec<Vec<f64>> = run.iter().map(|time| drive(*time)).collect();
         let path = match model.rollout(acting, &start, run, &inputs) {
             Ok(path) => path,
             Err(RobotError::Motion(TreeError::Diverged { .. } | TreeError::NoInertia { .. })) => {
-                return Ok(ClosedLoop { joints: None, runs });
+                return Ok(ClosedLoop { joints: None, runs, starts });
             }
             Err(error) => return Err(error),
         };
@@ -121,5 +127,5 @@ pub fn closed_loop(
         runs += 1;
         at = end;
     }
-    Ok(ClosedLoop { joints: Some(errors), runs })
+    Ok(ClosedLoop { joints: Some(errors), runs, starts })
 }

@@ -36,7 +36,7 @@ pub(crate) struct Drive {
 }
 
 /// Returns the motion of an oscillator at rest under torques at times, linear in between.
-fn moved(tracking: &Tracking, times: &[f64], torques: &[f64], start: [f64; 2]) -> Vec<f64> {
+pub(crate) fn moved(tracking: &Tracking, times: &[f64], torques: &[f64], start: [f64; 2]) -> Vec<f64> {
     let Tracking { inertia, damping, stiffness } = *tracking;
     let [mut x, mut v] = start;
     let mut path = vec![x];
@@ -72,7 +72,7 @@ fn laws(samples: &[Sample], speed: f64, turns: bool) -> Vec<Vec<f64>> {
 
 /// Solves the normal equations of columns, scaled to unit length. A direction that the others hold already takes no
 /// part. Returns the coefficients.
-fn fitted(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+pub(crate) fn fitted(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let dot = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
     let lengths: Vec<f64> = columns.iter().map(|own| dot(own, own).sqrt().max(f64::MIN_POSITIVE)).collect();
     let row = |(at, one): (usize, &Vec<f64>)| -> Vec<f64> {
@@ -91,8 +91,21 @@ fn fitted(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     solution.iter().zip(&lengths).map(|(own, length)| own / length).collect()
 }
 
+/// Returns the number of independent numbers in the motion of an oscillator: two for each second and hertz of its noise bandwidth,
+/// k/(4c).
+pub(crate) fn independent(tracking: &Tracking, seconds: f64) -> f64 {
+    2.0 * seconds * tracking.stiffness / (4.0 * tracking.damping)
+}
+
+/// Returns the torque of dry friction of unit size in the direction of the motion.
+pub(crate) fn directions(samples: &[Sample]) -> Vec<f64> {
+    let speed = samples.iter().map(|own| own.velocity.powi(2)).sum::<f64>() / samples.len().max(1) as f64;
+    let slow = (SLOW * speed.sqrt()).max(f64::MIN_POSITIVE);
+    samples.iter().map(|own| (own.velocity / slow).tanh()).collect()
+}
+
 /// Returns the sum of the squares that columns with coefficients leave.
-fn squares_left(columns: &[Vec<f64>], coefficients: &[f64], mut target: Vec<f64>) -> f64 {
+pub(crate) fn squares_left(columns: &[Vec<f64>], coefficients: &[f64], mut target: Vec<f64>) -> f64 {
     for (column, coefficient) in columns.iter().zip(coefficients) {
         for (left, own) in target.iter_mut().zip(column) {
             *left -= coefficient * own;
@@ -146,8 +159,7 @@ pub(crate) fn drive_noise(tracking: &Tracking, recordings: &[Vec<Sample>], turns
         let all: f64 = friction.iter().map(|own| own * own).sum();
         squares_left(others, &fitted(others, friction), friction.clone()) / all.max(f64::MIN_POSITIVE)
     });
-    // Two numbers for each second and hertz of the oscillator's noise bandwidth, k/(4c).
-    let numbers = 2.0 * seconds * tracking.stiffness / (4.0 * tracking.damping);
+    let numbers = independent(tracking, seconds);
     let taken = (columns.len() as f64 / numbers.max(f64::MIN_POSITIVE)).min(MOST_TAKEN);
     Drive {
         density: 2.0 * tracking.damping * tracking.stiffness * variance / (1.0 - taken),

@@ -9,6 +9,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod agreement;
 mod along;
 mod closed_loop;
 pub mod columns;
@@ -24,6 +25,7 @@ mod smoothing;
 mod tracking;
 mod urdf;
 
+pub use agreement::{JointCoefficient, coefficients};
 pub use along::Along;
 pub use closed_loop::{ClosedLoop, JointError, Variant, closed_loop};
 pub use error::RobotError;

@@ -149,6 +149,76 @@ fn torques(along: &Along, joint: usize, share: f64) -> Option<(usize, Vec<Torque
     Some((used.start, own))
 }
 
+/// Samples of one joint in all recordings, with the oscillator that holds its simulator to them.
+pub(crate) struct Gathered {
+    samples: Vec<Vec<Torques>>,
+    /// Index of the first sample that is used, by recording.
+    from: Vec<usize>,
+    pub(crate) tracking: Tracking,
+    pub(crate) turns: bool,
+}
+
+impl Gathered {
+    /// Gathers the samples of a joint in the first `share` of each recording.
+    pub(crate) fn of(
+        joints: &[JointInfo],
+        recordings: &[&Along],
+        joint: usize,
+        share: f64,
+    ) -> Result<Self, RobotError> {
+        // Names are for messages; a joint that is asked for is one of the model.
+        let name = joints.get(joint).map(|own| own.name.clone()).unwrap_or_default();
+        let (mut samples, mut from) = (Vec::new(), Vec::new());
+        for along in recordings {
+            let (first, own) = torques(along, joint, share).ok_or_else(|| RobotError::NoColumn {
+                log: along.recording().name.clone(),
+                quantity: "torque",
+                joint: name.clone(),
+                columns: "positions only".to_owned(),
+                option: format!("{name}=POSITION,TORQUE"),
+            })?;
+            samples.push(own);
+            from.push(first);
+        }
+        let count = samples.iter().map(Vec::len).sum::<usize>().max(1) as f64;
+        let inertia = samples.iter().flatten().map(|own| own.inertia).sum::<f64>() / count;
+        let pace = pace(&samples).ok_or(RobotError::Still { joint: name })?;
+        let (damping, stiffness) = (2.0 * DAMPING_RATIO * inertia * pace, inertia * pace * pace);
+        let turns = joints.get(joint).is_some_and(|own| !own.slides);
+        Ok(Self { samples, from, tracking: Tracking { inertia, damping, stiffness }, turns })
+    }
+
+    /// Returns the motion with the torques that the model leaves unexplained, by recording.
+    fn unexplained(&self, hold: Hold) -> Vec<Vec<Sample>> {
+        let sample = |own: &Torques| Sample {
+            time: own.time,
+            position: own.position,
+            velocity: own.velocity,
+            acceleration: own.acceleration,
+            unexplained: own.inertia * own.acceleration - own.known(hold),
+        };
+        self.samples.iter().map(|own| own.iter().map(sample).collect()).collect()
+    }
+
+    /// Returns the behavior of the torque between samples that leaves less, the samples under it, and what is left.
+    pub(crate) fn best(&self) -> (Hold, Vec<Vec<Sample>>, Drive) {
+        let [held, linear] = HOLDS.map(|hold| {
+            let samples = self.unexplained(hold);
+            let drive = drive_noise(&self.tracking, &samples, self.turns);
+            (hold, samples, drive)
+        });
+        if held.2.density < linear.2.density { held } else { linear }
+    }
+
+    /// Returns the root mean square of a quantity about its mean.
+    fn root(&self, of: impl Fn(&Torques) -> f64) -> f64 {
+        let all = || self.samples.iter().flatten().map(&of);
+        let count = all().count().max(1) as f64;
+        let mean = all().sum::<f64>() / count;
+        (all().map(|own| (own - mean).powi(2)).sum::<f64>() / count).sqrt()
+    }
+}
+
 /// Projects recordings of a robot, or the first `share` of each, onto one of its joints.
 ///
 /// # Errors
@@ -159,56 +229,21 @@ pub fn project(
     joint: usize,
     share: f64,
 ) -> Result<Projected, RobotError> {
-    // Names are for messages; a joint that is asked for is one of the model.
-    let name = joints.get(joint).map(|own| own.name.clone()).unwrap_or_default();
-    let mut samples: Vec<Vec<Torques>> = Vec::new();
-    let mut from = Vec::new();
-    for along in recordings {
-        let (first, own) = torques(along, joint, share).ok_or_else(|| RobotError::NoColumn {
-            log: along.recording().name.clone(),
-            quantity: "torque",
-            joint: name.clone(),
-            columns: "positions only".to_owned(),
-            option: format!("{name}=POSITION,TORQUE"),
-        })?;
-        samples.push(own);
-        from.push(first);
-    }
-    let count = samples.iter().map(Vec::len).sum::<usize>().max(1) as f64;
-    let inertia = samples.iter().flatten().map(|own| own.inertia).sum::<f64>() / count;
-    let pace = pace(&samples).ok_or(RobotError::Still { joint: name })?;
-    let tracking =
-        Tracking { inertia, damping: 2.0 * DAMPING_RATIO * inertia * pace, stiffness: inertia * pace * pace };
-    let turns = joints.get(joint).is_some_and(|own| !own.slides);
-    let under = |hold: Hold| {
-        let sample = |own: &Torques| Sample {
-            time: own.time,
-            position: own.position,
-            velocity: own.velocity,
-            acceleration: own.acceleration,
-            unexplained: own.inertia * own.acceleration - own.known(hold),
-        };
-        let known: Vec<Vec<Sample>> = samples.iter().map(|own| own.iter().map(sample).collect()).collect();
-        (hold, drive_noise(&tracking, &known, turns))
-    };
-    let [held, linear] = HOLDS.map(under);
-    let (hold, Drive { density, offsets, friction_alone }) =
-        if held.1.density < linear.1.density { held } else { linear };
+    let gathered = Gathered::of(joints, recordings, joint, share)?;
+    let (hold, _, Drive { density, offsets, friction_alone }) = gathered.best();
+    let tracking = gathered.tracking;
     let drive = |own: &Torques| {
-        own.known(hold) - (own.inertia - inertia) * own.acceleration
+        own.known(hold) - (own.inertia - tracking.inertia) * own.acceleration
             + tracking.damping * own.velocity
             + tracking.stiffness * own.position
     };
-    let root = |of: &dyn Fn(&Torques) -> f64| {
-        let mean = samples.iter().flatten().map(of).sum::<f64>() / count;
-        (samples.iter().flatten().map(|own| (of(own) - mean).powi(2)).sum::<f64>() / count).sqrt()
+    let scale = Scale {
+        torque: gathered.root(|own| own.drives[1]),
+        speed: gathered.root(|own| own.velocity),
+        friction_alone,
     };
-    let scale =
-        Scale { torque: root(&|own| own.drives[1]), speed: root(&|own| own.velocity), friction_alone };
-    let parts = samples.iter().zip(from).zip(offsets).map(|((samples, from), offset)| Part {
-        from,
-        drive: samples.iter().map(|own| drive(own) + offset).collect(),
-        offset,
+    let parts = gathered.samples.iter().zip(&gathered.from).zip(offsets).map(|((samples, from), offset)| {
+        Part { from: *from, drive: samples.iter().map(|own| drive(own) + offset).collect(), offset }
     });
     Ok(Projected { joint, tracking, drive_noise: density, scale, hold, parts: parts.collect() })
 }

@@ -1,7 +1,16 @@
 //! Repaired URDF: the file as it was, with other numbers in its `<dynamics>`.
 
-use crate::urdf::{JointPlace, Urdf};
 use std::fmt::Write as _;
+use std::ops::Range;
+
+/// Place of a joint in the text.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct JointPlace {
+    /// Range of `<joint …>…</joint>`.
+    pub(crate) element: Range<usize>,
+    /// Range of its `<dynamics …/>`, if there is one.
+    pub(crate) dynamics: Option<Range<usize>>,
+}
 
 /// Numbers and remarks to write back for one joint.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -51,9 +60,9 @@ pub(crate) fn comment(remarks: &[String]) -> String {
 /// Returns the text of a model with other damping and friction, one repair for each joint that moves. All else is
 /// as it was.
 #[must_use]
-pub(crate) fn repaired(urdf: &Urdf, repairs: &[JointRepair]) -> String {
+pub(crate) fn repaired(old: &str, places: &[JointPlace], repairs: &[JointRepair]) -> String {
     let mut edits: Vec<(usize, usize, String)> = Vec::new();
-    for (JointPlace { element, dynamics: place }, own) in urdf.places.iter().zip(repairs) {
+    for (JointPlace { element, dynamics: place }, own) in places.iter().zip(repairs) {
         let changes = own.damping.is_some() || own.friction.is_some();
         let remark = comment(&own.remarks);
         if !changes && remark.is_empty() {
@@ -61,13 +70,13 @@ pub(crate) fn repaired(urdf: &Urdf, repairs: &[JointRepair]) -> String {
         }
         match place {
             Some(place) => {
-                let old = urdf.text.get(place.clone()).unwrap_or_default();
-                let new = if changes { dynamics(old, own) } else { old.to_owned() };
+                let known = old.get(place.clone()).unwrap_or_default();
+                let new = if changes { dynamics(known, own) } else { known.to_owned() };
                 edits.push((place.start, place.end, new + &remark));
             }
             None => {
                 // The closing tag of a joint, which has children, ends its element.
-                let end = urdf.text.get(element.clone()).and_then(|text| text.rfind("</"));
+                let end = old.get(element.clone()).and_then(|text| text.rfind("</"));
                 let at = end.map_or(element.end, |end| element.start + end);
                 let new = if changes { dynamics("<dynamics/>", own) } else { String::new() };
                 edits.push((at, at, new + &remark));
@@ -77,9 +86,9 @@ pub(crate) fn repaired(urdf: &Urdf, repairs: &[JointRepair]) -> String {
     edits.sort_by_key(|(start, ..)| *start);
     let (mut text, mut from) = (String::new(), 0);
     for (start, end, new) in edits {
-        text += urdf.text.get(from..start).unwrap_or_default();
+        text += old.get(from..start).unwrap_or_default();
         text += &new;
         from = end;
     }
-    text + urdf.text.get(from..).unwrap_or_default()
+    text + old.get(from..).unwrap_or_default()
 }

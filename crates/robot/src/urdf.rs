@@ -5,28 +5,18 @@
 
 use crate::error::RobotError;
 use crate::model::{JointInfo, Model, RepairedModel, TreeModel};
-use crate::repair::{JointRepair, repaired};
+use crate::repair::{JointPlace, JointRepair, repaired};
 use dynamics::tree::{Body, Inertia, JointMotion, Placement, Tree};
 use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
-use std::ops::Range;
-
-/// Place of a joint in the text.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct JointPlace {
-    /// Range of `<joint …>…</joint>`.
-    pub(crate) element: Range<usize>,
-    /// Range of its `<dynamics …/>`, if there is one.
-    pub(crate) dynamics: Option<Range<usize>>,
-}
 
 /// Model of a robot as URDF. Prismatic and revolute joints move; the root link stands on the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Urdf {
-    pub(crate) text: String,
+    text: String,
     model: TreeModel,
     /// Place of each joint that moves.
-    pub(crate) places: Vec<JointPlace>,
+    places: Vec<JointPlace>,
 }
 
 /// Reader of one file.
@@ -228,7 +218,7 @@ impl Model for Urdf {
     }
 
     fn repaired(&self, repairs: &[JointRepair]) -> Result<Option<RepairedModel>, RobotError> {
-        Ok(Some(RepairedModel { extension: "urdf", text: repaired(self, repairs) }))
+        Ok(Some(RepairedModel { extension: "urdf", text: repaired(&self.text, &self.places, repairs) }))
     }
 }
 

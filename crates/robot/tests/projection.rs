@@ -5,7 +5,8 @@
 use dynamics::Hold;
 use dynamics::tree::{Acting, State, Tree, rollout};
 use robot::{
-    Along, Channel, Foreign, Model, Recording, RobotError, Simulator, Urdf, Variant, closed_loop, project,
+    Along, Channel, Foreign, Model, Recording, RobotError, Simulator, Urdf, Variant, closed_loop,
+    coefficients, project,
 };
 use serde_json::{Value, json};
 
@@ -59,6 +60,28 @@ fn a_torque_that_keeps_its_last_sample_is_told_from_one_that_does_not() {
         for joint in 0..2 {
             let found = project(arm.joints(), &[&along], joint, 1.0).unwrap();
             assert_eq!(found.hold, hold, "joint {joint}");
+        }
+    }
+}
+
+/// Coefficients come with their errors, so that chance is not taken for a difference.
+#[test]
+fn one_recording_tells_the_coefficients_of_a_joint_with_their_errors() {
+    let arm = arm();
+    let along = Along::of(&arm, recorded(arm.tree(), Hold::Linear)).unwrap();
+    for joint in 0..2 {
+        for own in coefficients(arm.joints(), &along, joint).unwrap() {
+            let truth = if own.quantity == "damping" { 0.2 } else { 0.0 };
+            let scale = match own.quantity {
+                "dry_friction" => 0.02,
+                "damping" => 0.02,
+                "armature" => 0.003,
+                _ => 0.05,
+            };
+            assert!(
+                (own.value - truth).abs() < scale && own.error < scale && own.error > 0.0,
+                "{joint} {own:?}"
+            );
         }
     }
 }

@@ -60,6 +60,8 @@ struct RecordingView<'a> {
     duration: String,
     samples: usize,
     role: &'static str,
+    /// Quantities that differ from the other recordings; empty if none does.
+    differs: String,
 }
 
 pub(crate) fn render(texts: &RunTexts<'_>, result: &JointsResult) -> Result<String, ReportError> {
@@ -181,5 +183,6 @@ fn recording(row: &RecordingRow) -> RecordingView<'_> {
         duration: quantity(&significant(row.duration_s, 3), "s"),
         samples: row.samples,
         role: if row.fitted { "fitted" } else { "checked only" },
+        differs: row.differs_in.join(", "),
     }
 }

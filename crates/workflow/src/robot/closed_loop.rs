@@ -7,7 +7,7 @@ use diagnosis::Settings;
 use dynamics::tree::Acting;
 use dynamics::{Hold, REGISTRY};
 use rayon::prelude::*;
-use results::{ClosedLoopRecording, ClosedLoopRow, JointErrorRow};
+use results::{ClosedLoopRecording, ClosedLoopRow, JointErrorRow, RunStartRow};
 use robot::{ClosedLoop, JointError, RobotError, Variant, closed_loop};
 use std::ops::Range;
 
@@ -59,6 +59,7 @@ impl RobotQuestion {
                 break;
             }
         }
+        // The shortest span is always tried.
         let (recordings, span) = last.unwrap_or_default();
         Ok(ClosedLoopRow {
             recordings,
@@ -212,10 +213,19 @@ fn row(
         repaired: error(2, at),
         noise_floor: *floor,
     });
+    // The variant with the most runs has all starts.
+    let longest =
+        found.iter().max_by_key(|own| own.starts.len()).map_or(&[][..], |own| own.starts.as_slice());
+    let starts = longest.iter().map(|(time_s, state)| RunStartRow {
+        time_s: *time_s,
+        position: state.position.clone(),
+        velocity: state.velocity.clone(),
+    });
     ClosedLoopRecording {
         path: own.along.recording().name.clone(),
         // Variants have as many runs each, unless their motion leaves every bound.
         runs: found.iter().map(|own| own.runs).max().unwrap_or(0),
+        starts: starts.collect(),
         joints: joints.collect(),
     }
 }

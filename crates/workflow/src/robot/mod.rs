@@ -5,6 +5,7 @@ mod closed_loop;
 mod identifiable;
 mod joint;
 mod read;
+mod recordings;
 mod result;
 
 pub use joint::{JointAnswer, JointQuestion};

@@ -33,7 +33,8 @@ impl RobotQuestion {
             repair: own.repair.clone(),
             closed_loop: error(&own.joint.name),
         });
-        let recordings = self.recordings.iter().filter_map(|own| {
+        let differences = self.differences();
+        let recordings = self.recordings.iter().zip(differences).filter_map(|(own, differs_in)| {
             let first = own.joints.first()?;
             let channel = own.along.recording().joints.first()?;
             let (from, to) = channel.times.first().zip(channel.times.last())?;
@@ -43,6 +44,8 @@ impl RobotQuestion {
                 duration_s: to - from,
                 samples: channel.times.len(),
                 fitted: own.fitted,
+                agrees: differs_in.is_empty(),
+                differs_in,
             })
         });
         JointsResult {
@@ -97,13 +100,14 @@ fn excludes_zero(own: &WithInterval) -> bool {
     own.interval_95[0] * own.interval_95[1] > 0.0
 }
 
-/// Returns the numbers and remarks of one joint for a file of a format.
+/// Returns the numbers and remarks of one joint for a file of a format: those that the whole model was run with.
 fn repair(own: &JointAnswer, format: &str) -> JointRepair {
     let (turns, torque) = if own.joint.slides { ("kg", "N") } else { ("kg m^2", "N m") };
     let significant = |value: f64| format!("{value:.4e}").parse::<f64>().unwrap_or(value);
     let mut remarks = Vec::new();
     let mut friction = None;
-    for active in own.answer.repaired.system.effects() {
+    let [.., run] = &own.acting;
+    for active in &run.effects {
         match active.id() {
             "coulomb_friction" => friction = active.value("torque").map(significant),
             "constant_torque" => {}
@@ -115,9 +119,8 @@ fn repair(own: &JointAnswer, format: &str) -> JointRepair {
             }
         }
     }
-    let damping = own.answer.repaired.system.nominal().damping();
-    let damping = own.repair.damping.map(|_| significant(damping));
-    let held = own.joint.armature.map(|known| significant(known + own.acting[2].inertia));
+    let damping = own.repair.damping.map(|_| significant(run.damping));
+    let held = own.joint.armature.map(|known| significant(known + run.inertia));
     let noted = |found: &WithInterval| held.is_none() && found.value.abs() > NOTED * own.tracking.inertia;
     if let Some(armature) = own.repair.armature.filter(noted) {
         remarks.push(format!(
@@ -127,7 +130,7 @@ fn repair(own: &JointAnswer, format: &str) -> JointRepair {
             significant(armature.interval_95[1])
         ));
     }
-    let spring = own.joint.stiffness.map(|known| significant(known + own.acting[2].stiffness));
+    let spring = own.joint.stiffness.map(|known| significant(known + run.stiffness));
     if let Some(found) = own.repair.stiffness.filter(|found| spring.is_none() && excludes_zero(found)) {
         let unit = if own.joint.slides { "N/m" } else { "N m/rad" };
         remarks.push(format!(

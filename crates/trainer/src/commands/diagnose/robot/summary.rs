@@ -17,7 +17,7 @@ pub(super) fn summary(RobotAnswer { result, repaired, .. }: &RobotAnswer, folder
         missing(result),
         coefficients(result),
         closed_loop(result),
-        [failed, result.notes.clone()].concat().join("\n"),
+        [failed, differing(result), result.notes.clone()].concat().join("\n"),
         format!(
             "took: {:.2} s\nreport: {path}/report.html\neach joint: {path}/<joint>/report.html{repaired}",
             result.seconds,
@@ -25,6 +25,14 @@ pub(super) fn summary(RobotAnswer { result, repaired, .. }: &RobotAnswer, folder
         ),
     ];
     parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n\n")
+}
+
+/// Names recordings that differ from the others.
+fn differing(result: &JointsResult) -> Vec<String> {
+    let differing = result.recordings.iter().filter(|own| !own.agrees);
+    differing
+        .map(|own| format!("{} differs from the other recordings in {}", own.path, own.differs_in.join(", ")))
+        .collect()
 }
 
 fn missing(result: &JointsResult) -> String {
