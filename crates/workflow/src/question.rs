@@ -172,7 +172,7 @@ impl Question {
         Ok(Self { stated, given, nominal })
     }
 
-    /// Reads records and their nominal simulator from files; a folder stands for the [`logs`] in it.
+    /// Reads records and their nominal simulator from files; a folder stands for the logs in it ([`Log::read`]).
     ///
     /// # Errors
     /// [`WorkflowError`] with the file, the place in it and the option to set.
