@@ -13,6 +13,7 @@ use crate::error::RobotError;
 use crate::mjcf;
 use crate::model::{Evaluated, JointInfo, Model, Moving, RepairedModel};
 use crate::repair::JointRepair;
+use dynamics::Effect;
 use dynamics::tree::{Acting, State, rollout};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -138,9 +139,11 @@ impl Foreign {
         for ((joint, own), added) in self.joints.iter().zip(acting).zip(&self.added) {
             let mut friction = 0.0;
             for active in &own.effects {
-                match active.id() {
-                    "coulomb_friction" => friction = active.value("torque")?,
-                    _ => return None,
+                match (active.id(), active.effect()) {
+                    ("coulomb_friction", _) => friction = active.value("torque")?,
+                    (_, Effect::System(_)) => return None,
+                    // Effects of the sensor move nothing.
+                    _ => {}
                 }
             }
             let parameters = json!({
