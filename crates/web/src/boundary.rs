@@ -6,7 +6,7 @@
 
 #![allow(unsafe_code, reason = "the attributes that name exports and imports; there is no unsafe block")]
 
-use crate::{Host, Session};
+use crate::{Dropped, Host};
 use std::cell::RefCell;
 
 #[link(wasm_import_module = "page")]
@@ -21,7 +21,7 @@ unsafe extern "C" {
 
 #[derive(Default)]
 struct State {
-    session: Session,
+    dropped: Dropped,
     room: Vec<u8>,
     answer: Vec<u8>,
 }
@@ -66,7 +66,7 @@ extern "C" fn add_file(name_length: usize) {
     STATE.with_borrow_mut(|state| {
         let mut bytes = std::mem::take(&mut state.room);
         let name = bytes.split_off(bytes.len().saturating_sub(name_length));
-        state.session.add(String::from_utf8_lossy(&name).into_owned(), bytes);
+        state.dropped.add(String::from_utf8_lossy(&name).into_owned(), bytes);
     });
 }
 
@@ -77,7 +77,7 @@ extern "C" fn ask() -> usize {
         let request = std::mem::take(&mut state.room);
         // The last answer is read; its memory serves the next.
         state.answer = Vec::new();
-        state.answer = state.session.ask(&request, &Browser).into_bytes();
+        state.answer = state.dropped.ask(&request, &Browser).into_bytes();
         state.answer.len()
     })
 }

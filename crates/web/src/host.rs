@@ -1,8 +1,8 @@
-//! Border of a session: help from the page, and the form of its answers.
+//! Border to the page: its help, and the form of its answers.
 
 use serde_json::Value;
 
-/// Clock and listener that the page lends to a session.
+/// Clock and listener that the page lends to a request.
 pub trait Host {
     /// Returns the seconds since some moment.
     fn seconds(&self) -> f64;

@@ -1,6 +1,6 @@
 //! Tests of the requests, and of the page's files against the crates that they repeat.
 
-use crate::{Host, Session};
+use crate::{Dropped, Host};
 use report::plot::Hue;
 use serde_json::{Value, json};
 use std::cell::RefCell;
@@ -23,8 +23,8 @@ impl Host for Nobody {
     }
 }
 
-fn ask(session: &mut Session, request: &Value) -> Value {
-    let answer = session.ask(request.to_string().as_bytes(), &Nobody::default());
+fn ask(dropped: &mut Dropped, request: &Value) -> Value {
+    let answer = dropped.ask(request.to_string().as_bytes(), &Nobody::default());
     serde_json::from_str(&answer).unwrap()
 }
 
@@ -50,17 +50,17 @@ fn the_plots_follow_the_color_scheme() {
 
 #[test]
 fn every_example_is_a_log_that_can_be_diagnosed() {
-    let mut session = Session::default();
-    let offer = ask(&mut session, &json!({ "do": "offer" }));
+    let mut dropped = Dropped::default();
+    let offer = ask(&mut dropped, &json!({ "do": "offer" }));
     let effects: Vec<&str> =
         offer["examples"].as_array().unwrap().iter().map(|example| example["id"].as_str().unwrap()).collect();
     assert!(effects.len() >= 15, "{effects:?}");
     for effect in [&["shipped", "none"], &effects[..]].concat() {
-        let made = ask(&mut session, &json!({ "do": "simulate", "effect": effect, "size": 1.0 }));
+        let made = ask(&mut dropped, &json!({ "do": "simulate", "effect": effect, "size": 1.0 }));
         let record = made["record"].as_str().unwrap_or_else(|| panic!("{effect}: {made}"));
-        ask(&mut session, &json!({ "do": "clear" }));
-        session.add("record.csv".to_owned(), record.as_bytes().to_vec());
-        let found = ask(&mut session, &json!({ "do": "look", "reading": {} }));
+        ask(&mut dropped, &json!({ "do": "clear" }));
+        dropped.add("record.csv".to_owned(), record.as_bytes().to_vec());
+        let found = ask(&mut dropped, &json!({ "do": "look", "reading": {} }));
         assert_eq!(found["logs"][0]["diagnosable"], true, "{effect}: {found}");
         assert!(workflow::nominal::parse("nominal.toml", made["nominal"].as_str().unwrap()).is_ok());
     }
@@ -75,30 +75,30 @@ fn a_log_is_read_by_the_options_of_the_form() {
                 format!("{time};{};{}\n", 40.0 * (-2e-4 * time).exp() * (0.02 * time).cos(), at % 7)
             })
             .collect::<String>();
-    let mut session = Session::default();
-    session.add("log.csv".to_owned(), text.into_bytes());
+    let mut dropped = Dropped::default();
+    dropped.add("log.csv".to_owned(), text.into_bytes());
     let reading = json!({ "time": "a", "time_unit": "ms", "value": "b", "unit": "deg" });
-    let found = ask(&mut session, &json!({ "do": "look", "reading": reading }));
+    let found = ask(&mut dropped, &json!({ "do": "look", "reading": reading }));
     let frequency =
         found.pointer("/logs/0/found/oscillator/natural_frequency_hz/value").and_then(Value::as_f64);
     assert!((frequency.unwrap() - 20.0 / std::f64::consts::TAU).abs() < 0.01, "{found}");
-    let refused = ask(&mut session, &json!({ "do": "look", "reading": { "unit": "furlong" } }));
+    let refused = ask(&mut dropped, &json!({ "do": "look", "reading": { "unit": "furlong" } }));
     assert!(refused["error"].as_str().unwrap().contains("furlong"), "{refused}");
-    let estimated = ask(&mut session, &json!({ "do": "estimate", "reading": reading }));
+    let estimated = ask(&mut dropped, &json!({ "do": "estimate", "reading": reading }));
     let ratio = estimated.pointer("/logs/0/methods/0/zeta").and_then(Value::as_f64).unwrap();
     assert!((ratio - 0.01).abs() < 1e-3, "{estimated}");
 }
 
 #[test]
 fn a_diagnosis_tells_its_stages_and_has_the_program_s_files() {
-    let mut session = Session::default();
-    let made = ask(&mut session, &json!({ "do": "simulate", "effect": "coulomb_friction", "size": 1.0 }));
-    session.add("record.csv".to_owned(), made["record"].as_str().unwrap().as_bytes().to_vec());
+    let mut dropped = Dropped::default();
+    let made = ask(&mut dropped, &json!({ "do": "simulate", "effect": "coulomb_friction", "size": 1.0 }));
+    dropped.add("record.csv".to_owned(), made["record"].as_str().unwrap().as_bytes().to_vec());
     let request = json!({
         "do": "diagnose", "reading": {}, "nominal_name": "nominal.toml", "nominal": made["nominal"], "name": "record.csv",
     });
     let host = Nobody::default();
-    let answer: Value = serde_json::from_str(&session.ask(request.to_string().as_bytes(), &host)).unwrap();
+    let answer: Value = serde_json::from_str(&dropped.ask(request.to_string().as_bytes(), &host)).unwrap();
     assert!(answer["summary"].as_str().unwrap().contains("dry friction"), "{answer}");
     let names: Vec<&str> =
         answer["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();

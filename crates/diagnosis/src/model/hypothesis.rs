@@ -12,8 +12,8 @@ use record::Quantity;
 /// Smallest time constant I/c of the inertia that a fit may reach, in sampling intervals.
 const STIFFEST: f64 = 0.5;
 
-/// Damping ratio from which on a body is well damped.
-const WELL_DAMPED: f64 = 0.2;
+/// Damping ratio from which on a body is well damped: a swing of six periods leaves less than a thousandth.
+pub(crate) const WELL_DAMPED: f64 = 0.2;
 
 /// Number that calibration may move: a nominal coefficient, or a parameter of a known effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,6 +7,7 @@ use crate::data::release;
 use crate::data::segments::{Data, MOST_SEARCHED, cut};
 use crate::error::DiagnosisError;
 use crate::measurement::signatures;
+use crate::model::hypothesis::WELL_DAMPED;
 use dynamics::NominalSimulator;
 
 /// Records, cut into segments.
@@ -21,9 +22,6 @@ pub(crate) struct Measured {
     pub(crate) samples_used: f64,
     pub(crate) findings: Vec<Finding>,
 }
-
-/// Damping ratio from which on a swing of six periods leaves less than a thousandth.
-const FORGETTING: f64 = 0.2;
 
 /// Maximum number of samples of a driven body that forgets its start: a hundred independent segments tell what all
 /// of them do.
@@ -51,7 +49,7 @@ impl Measured {
 fn forgets(simulator: &NominalSimulator) -> bool {
     let nominal = simulator.nominal();
     let critical = 2.0 * nominal.inertia() * simulator.angular_frequency();
-    critical > 0.0 && nominal.damping() > FORGETTING * critical
+    critical > 0.0 && nominal.damping() > WELL_DAMPED * critical
 }
 
 /// Returns the kept samples of each record without those before its release, and the findings on the latter.

@@ -12,7 +12,7 @@ use workflow::Log;
 
 /// The dropped files.
 #[derive(Debug, Default)]
-pub struct Session {
+pub struct Dropped {
     logs: Vec<Log>,
 }
 
@@ -34,7 +34,7 @@ enum Request {
     Diagnose(Box<DiagnoseRequest>),
 }
 
-impl Session {
+impl Dropped {
     /// Adds a file with its name.
     pub fn add(&mut self, name: String, bytes: Vec<u8>) {
         self.logs.push(Log { name, bytes, note: None });
