@@ -41,7 +41,10 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
 
 /// Returns the slope of the turning points' times against their number, in seconds, by least squares. A rough
 /// half period numbers them, so that a missed turning point does not shift the numbers of the others.
-fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
+///
+/// `None` if there is only one.
+#[must_use]
+pub fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
     let times = envelope.times_s();
     let count = times.len() as f64;
     let numbers: Vec<f64> = times

@@ -39,6 +39,8 @@ struct Samples {
     /// Number of lines that hold only an input, among lines between which it is held.
     held_lines: usize,
     first_missing: Option<(u64, usize)>,
+    /// `true` if a column numbers the lines.
+    is_counted: bool,
 }
 
 /// Columns that are read.
@@ -50,6 +52,8 @@ struct Chosen {
     input: Option<Pick>,
     /// `true` if other runs stand beside this one, whose lines may go on after its last.
     is_run: bool,
+    /// Numbers of the rows by a column that counts them, if there is no time column.
+    counted: Option<Vec<usize>>,
 }
 
 impl Samples {
@@ -86,14 +90,17 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     };
     let rows = table.chosen(filter.as_ref())?;
     let time = roles.time()?;
-    let (value, also) = roles.value(time, &|at| Swing::of(&table.numbers(at, &rows)))?;
-    let taken: Vec<usize> = [Some(value), time].into_iter().flatten().map(|pick| pick.at).collect();
+    let (counter, counted) = time.is_none().then(|| table.counter(&rows)).flatten().unzip();
+    let places = time.or(counter.map(|at| Pick { at, because: NUMBERS }));
+    let (value, also) = roles.value(places, &|at| Swing::of(&table.numbers(at, &rows)))?;
+    let taken: Vec<usize> = [Some(value), places].into_iter().flatten().map(|pick| pick.at).collect();
     let (input, note) = roles.input(&taken, &|at| table.is_affine([value.at, at], &rows))?;
     if let Some(fault) = filter.is_none().then(|| table.series(false)).flatten() {
         return Err(fault);
     }
     let nanoseconds = time.and_then(|time| nanoseconds(&columns, time.at));
-    let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some() };
+    findings.extend(counter.map(|at| numbered(table.title(at))));
+    let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some(), counted };
     let (mut samples, held) = read(&table, &chosen, &rows, asked.missing)?;
     if let (Missing::Refuse, Some((line, at))) = (asked.missing, samples.first_missing) {
         let column = table.title(at).to_owned();
@@ -167,8 +174,9 @@ fn fill(
         parsed.push(*line, *stamp, value * factor, input)?;
         numbers.push(number);
     }
-    let is_numbered =
-        samples.missing_lines > 0 && asked.missing == Missing::Segment || samples.held_lines > 0;
+    let is_numbered = samples.missing_lines > 0 && asked.missing == Missing::Segment
+        || samples.held_lines > 0
+        || samples.is_counted;
     parsed.rows = is_numbered.then_some(numbers);
     Ok(())
 }
@@ -227,6 +235,14 @@ impl Observed {
     }
 }
 
+/// Reason to take a column as the place of the samples.
+const NUMBERS: &str = "numbers the samples";
+
+/// Returns a sentence on samples that a column places in time.
+fn numbered(title: &str) -> String {
+    format!("`{title}` {NUMBERS}, of which some are missing, and placed them in time")
+}
+
 /// Returns a sentence if duplicate lines were left out.
 fn copied(count: usize) -> Option<String> {
     let which = if count == 1 { "repeats" } else { "repeat" };
@@ -273,10 +289,11 @@ fn read(
     let needed = columns.iter().max().map_or(0, |at| at + 1);
     let times =
         chosen.time.into_iter().flat_map(|time| rows.iter().filter_map(move |(_, row)| row.get(time.at)));
-    let samples = Samples { order: DateOrder::of(times.copied()), ..Samples::default() };
+    let is_counted = chosen.counted.is_some();
+    let samples = Samples { order: DateOrder::of(times.copied()), is_counted, ..Samples::default() };
     let mut reader = Reader { table, chosen, treated, held, last_input: None, samples };
     let mut number = 0;
-    for (line, row) in rows {
+    for (at, (line, row)) in rows.iter().enumerate() {
         // A row that ends before the column has an empty cell there.
         let cell = |at: usize| row.get(at).copied().unwrap_or_default();
         if chosen.is_run && columns.iter().all(|at| is_missing(cell(*at))) {
@@ -288,7 +305,8 @@ fn read(
         if row.iter().skip(width).any(|field| !field.is_empty()) {
             return Err(Fault::ExtraFields { line: *line, found: row.len(), expected: width });
         }
-        number += usize::from(reader.line(*line, number, &columns, &cell)?);
+        let place = chosen.counted.as_ref().and_then(|numbers| numbers.get(at)).copied();
+        number += usize::from(reader.line(*line, place.unwrap_or(number), &columns, &cell)?);
     }
     Ok((reader.samples, finding))
 }
@@ -411,7 +429,7 @@ fn stamps(
     let Some(time) = chosen.time else {
         let rate = asked.sample_rate_hz.unwrap_or(1.0);
         let place = |(index, number): (usize, &usize)| match asked.missing {
-            Missing::Drop => index as f64 / rate,
+            Missing::Drop if chosen.counted.is_none() => index as f64 / rate,
             _ => *number as f64 / rate,
         };
         return (samples.numbers.iter().enumerate().map(place).collect(), None, Vec::new());

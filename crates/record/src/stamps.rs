@@ -117,7 +117,8 @@ pub(crate) fn statistics(
     let largest_group = stamps.chunk_by(|one, next| one == next).map(<[f64]>::len).max();
     let repeated = stamps.len() - ends.len();
     // Stamps that lie on no lattice are not rounded.
-    let long = 1.5 * usual + rounding_s.unwrap_or_default().min(0.5 * usual);
+    // Steps of decimals are not exact: the last factor counts all of this length.
+    let long = (1.5 * usual + rounding_s.unwrap_or_default().min(0.5 * usual)) * (1.0 - 1e-9);
     debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
     // A record may end within a group, whose last sample is then missing.
     let whole = numbers.ends.get(..ends.len() - usize::from(repeated > 0)).unwrap_or_default();
