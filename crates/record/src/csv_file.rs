@@ -57,6 +57,13 @@ struct Chosen {
 }
 
 impl Samples {
+    /// Refuses missing cells, unless the options say what becomes of them.
+    fn refuse_missing(&self, table: &Table<'_>, treated: Missing) -> Result<(), Fault> {
+        let (Missing::Refuse, Some((line, at))) = (treated, self.first_missing) else { return Ok(()) };
+        let column = table.title(at).to_owned();
+        Err(Fault::MissingCells { line, column, count: self.missing_cells })
+    }
+
     /// Undoes the coding of the values; returns a sentence about it, and `true` if it confirms the unit.
     fn decode(&mut self, unit: Option<Unit>) -> Option<(String, bool)> {
         let plain: Vec<f64> = self.values.iter().flatten().copied().collect();
@@ -90,8 +97,8 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     };
     let rows = table.chosen(filter.as_ref())?;
     let time = roles.time()?;
-    let (counter, counted) = time.is_none().then(|| table.counter(&rows)).flatten().unzip();
-    let places = time.or(counter.map(|at| Pick { at, because: NUMBERS }));
+    let (counter, counted) = if time.is_none() { table.counter(&rows).unzip() } else { (None, None) };
+    let places = time.or(counter);
     let (value, also) = roles.value(places, &|at| Swing::of(&table.numbers(at, &rows)))?;
     let taken: Vec<usize> = [Some(value), places].into_iter().flatten().map(|pick| pick.at).collect();
     let (input, note) = roles.input(&taken, &|at| table.is_affine([value.at, at], &rows))?;
@@ -99,13 +106,10 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         return Err(fault);
     }
     let nanoseconds = time.and_then(|time| nanoseconds(&columns, time.at));
-    findings.extend(counter.map(|at| numbered(table.title(at))));
+    findings.extend(counter.map(|pick| numbered(table.title(pick.at), pick)));
     let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some(), counted };
     let (mut samples, held) = read(&table, &chosen, &rows, asked.missing)?;
-    if let (Missing::Refuse, Some((line, at))) = (asked.missing, samples.first_missing) {
-        let column = table.title(at).to_owned();
-        return Err(Fault::MissingCells { line, column, count: samples.missing_cells });
-    }
+    samples.refuse_missing(&table, asked.missing)?;
     if time.is_some() {
         statements.sample_rate_hz = asked.sample_rate_hz.or(statements.sample_rate_hz);
     }
@@ -235,12 +239,9 @@ impl Observed {
     }
 }
 
-/// Reason to take a column as the place of the samples.
-const NUMBERS: &str = "numbers the samples";
-
 /// Returns a sentence on samples that a column places in time.
-fn numbered(title: &str) -> String {
-    format!("`{title}` {NUMBERS}, of which some are missing, and placed them in time")
+fn numbered(title: &str, pick: Pick) -> String {
+    format!("`{title}` {}, of which some are missing, and placed them in time", pick.because)
 }
 
 /// Returns a sentence if duplicate lines were left out.

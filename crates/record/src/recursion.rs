@@ -3,12 +3,15 @@
 use crate::statistics::upper_median;
 use nalgebra::{DMatrix, DVector};
 
-/// Number of earlier values in the recursion: five modes.
-const ORDER: usize = 10;
+/// Number of earlier values in the recursion, of a short series and of a longer one: three and five modes. A long recursion
+/// also follows a hand in a short series.
+const ORDERS: [usize; 2] = [6, 10];
+/// Length from which a series is long.
+const LONG: usize = 200;
 /// Values of the recursion in a half swing.
 const PER_HALF_SWING: f64 = 5.0;
-/// Fewest values, over the order, from which the recursion is estimated.
-const FEWEST: usize = 4;
+/// Fewest values from which the recursion is estimated.
+const FEWEST: usize = 40;
 /// Ratio of the largest to the median root mean square residual of parts as long as the order, up to which nothing acts:
 /// 1.2 to 2.0 for simulated decays of one to three modes, dry friction and noise of up to 3 % of the amplitude; 2.8 and
 /// more where a hand lifts, holds, strikes or stops.
@@ -25,20 +28,22 @@ const ZERO: f64 = 1e-9;
 pub(crate) fn is_one_motion(values: &[f64], half_swing: f64) -> bool {
     let step = ((half_swing / PER_HALF_SWING) as usize).max(1);
     let series: Vec<f64> = values.iter().copied().step_by(step).collect();
-    if series.len() < FEWEST * ORDER {
+    if series.len() < FEWEST {
         return false;
     }
+    let [short, long] = ORDERS;
+    let order = if series.len() < LONG { short } else { long };
     let size = series.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let rows = series.len() - ORDER;
-    let earlier = series.windows(ORDER).take(rows).flat_map(|values| values.iter().copied().chain([size]));
-    let earlier = DMatrix::from_row_iterator(rows, ORDER + 1, earlier);
-    let next = DVector::from_iterator(rows, series.iter().skip(ORDER).copied());
+    let rows = series.len() - order;
+    let earlier = series.windows(order).take(rows).flat_map(|values| values.iter().copied().chain([size]));
+    let earlier = DMatrix::from_row_iterator(rows, order + 1, earlier);
+    let next = DVector::from_iterator(rows, series.iter().skip(order).copied());
     let decomposition = earlier.clone().svd(true, true);
     let zero = ZERO * decomposition.singular_values.max();
     let Ok(recursion) = decomposition.solve(&next, zero) else { return false };
     let residuals = next - earlier * recursion;
     let square = |part: &[f64]| part.iter().map(|residual| residual * residual).sum::<f64>();
-    let squares: Vec<f64> = residuals.as_slice().chunks_exact(ORDER).map(square).collect();
+    let squares: Vec<f64> = residuals.as_slice().chunks_exact(order).map(square).collect();
     let most = squares.iter().copied().fold(0.0, f64::max);
     upper_median(squares).is_some_and(|usual| most <= EVEN * EVEN * usual)
 }

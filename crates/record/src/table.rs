@@ -124,7 +124,7 @@ impl<'a> Table<'a> {
 
     /// Returns the column that numbers the rows, with the number of each counted from the first, if some are missing: by
     /// its name, whole numbers that increase, by 1 as a rule.
-    pub(crate) fn counter(&self, rows: &[(u64, Vec<&str>)]) -> Option<(usize, Vec<usize>)> {
+    pub(crate) fn counter(&self, rows: &[(u64, Vec<&str>)]) -> Option<(Pick, Vec<usize>)> {
         let named = |column: &Column| COUNTERS.iter().any(|word| column.heading.has(word));
         let mut columns = (0..self.columns.len()).filter(|at| self.columns.get(*at).is_some_and(named));
         columns.find_map(|at| {
@@ -135,8 +135,9 @@ impl<'a> Table<'a> {
             let (complete, rises) = (ones + 1 == numbers.len(), steps().all(|step| step >= 1.0));
             let is_counter = is_whole && rises && !complete && 2 * ones > numbers.len();
             let first = *numbers.first()?;
+            let pick = Pick { at, because: "numbers the samples" };
             (is_counter && numbers.len() == rows.len())
-                .then(|| (at, numbers.iter().map(|number| (number - first) as usize).collect()))
+                .then(|| (pick, numbers.iter().map(|number| (number - first) as usize).collect()))
         })
     }
 
