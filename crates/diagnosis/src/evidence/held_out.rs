@@ -1,4 +1,7 @@
 //! Held-out prediction: residuals of a hypothesis on parts of the records that it was not fitted to.
+//!
+//! Blocks of every segment take turns. Half of the segments would have to predict amplitudes that they never had: a
+//! stop that only the first swings meet was rated at −106 nats although the set with it left a fifteenth of the error.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Fit, Point};

@@ -32,6 +32,10 @@
 //! Eighteen further features, the share of the error that the best set leaves and the stability of a class
 //! among them, lowered the cross-validated log loss by less than 0.2 % where something is left.
 //! Gradient-boosted trees on all of them lowered it by 5 % and did not lower the calibration error.
+//!
+//! At first, the evidence was taken at face value where nothing is left, and one learned function served elsewhere.
+//! Alone, that function names 46 % of single effects far below the noise of a sample; the two functions together name
+//! 88 %.
 
 use crate::answer::ClassEvidence;
 

@@ -1,4 +1,8 @@
 //! Finding of a sensor whose readings lag behind the motion in either direction.
+//!
+//! Such a lag adds a square wave that does not decay with the swing. Its harmonics look like stiffness, and its phase
+//! like drifting clocks and springs, so it is fitted before physical effects. It takes none of a set's places, because
+//! quantization steps are visible without a fit.
 
 use crate::answer::Finding;
 use crate::data::segments::Data;
