@@ -53,7 +53,7 @@ mod tests {
         let half = 0.5 * std::f64::consts::TAU / 4096.0;
         assert!((value("step") / (2.0 * half) - 1.0).abs() < 1e-6);
         assert!((value("hysteresis") / half - 1.0).abs() < 0.1, "{} {half}", value("hysteresis"));
-        let ratio = answer.gap.repaired / answer.gap.noise_floor.value;
+        let ratio = answer.gap.repaired / answer.gap.noise_floor;
         assert!(ratio < 1.05, "{ratio}");
     }
 
