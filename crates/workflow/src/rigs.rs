@@ -181,6 +181,7 @@ fn coefficient(
     parameter: &str,
     values: &[(&str, &ParameterRow)],
 ) -> SharedCoefficientRow {
+    // There is at least one value.
     let unit = values.first().map(|(_, own)| own.unit.clone()).unwrap_or_default();
     let is_one_unit = values.iter().all(|(_, own)| own.unit == unit);
     let estimates: Vec<(f64, f64)> = values
@@ -209,6 +210,7 @@ fn coefficient(
             .collect(),
         agree,
         chi_squared: found.map(|found| found.chi_squared),
+        // A single value is compared with none.
         degrees: found.map_or(0, |found| found.degrees),
         mean: found.filter(|_| agree == Some(true)).map(mean),
         farthest: found.map(|found| {
