@@ -23,10 +23,10 @@ fn report(answer: &Diagnosis) {
         gap.recalibrated,
         gap.repaired,
         gap.ceiling,
-        gap.noise_floor.value,
+        gap.noise_floor,
         gap.closure.value,
         gap.closure.interval_95,
-        gap.ratio_to_floor.value,
+        gap.ratio_to_floor,
         gap.last_third
     );
     println!("  {:?}", answer.place.budget);
@@ -329,7 +329,7 @@ fn bank(only: Option<&str>) -> Vec<Outcome> {
                 answer.verdict.status,
                 effects,
                 answer.verdict.confidence,
-                answer.gap.ratio_to_floor.value,
+                answer.gap.ratio_to_floor,
                 answer.gap.recalibrated,
                 answer.verdict.equivalent
             );

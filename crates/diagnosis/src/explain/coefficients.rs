@@ -1,6 +1,6 @@
 //! Coefficients with units and intervals, in the form that the answer reports.
 
-use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
+use crate::answer::{Calibrated, KnownRow, ParameterEstimate};
 use crate::evidence::context::Context;
 use crate::evidence::determined::says_something;
 use crate::fit::fitted::Fit;
@@ -11,16 +11,17 @@ use crate::model::hypothesis::{Calibrated as Coefficient, Known};
 use crate::noise::statistics::normal_above;
 use dynamics::{NominalSimulator, Units};
 use record::Quantity;
+use results::WithInterval;
 
-pub(crate) fn around(value: f64, error: f64) -> Interval {
+pub(crate) fn around(value: f64, error: f64) -> WithInterval {
     // A standard error from [`UNBOUNDED`] counts as infinite, whatever the variance that multiplied it.
     let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
     let reach = normal_above(0.025) * error;
-    Interval { value, interval_95: [value - reach, value + reach] }
+    WithInterval { value, interval_95: [value - reach, value + reach] }
 }
 
 /// Returns the estimate and 95 % interval of a global parameter.
-pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
+pub(crate) fn interval(fit: &Fit, index: usize) -> WithInterval {
     // Every global parameter has its place.
     let value = fit.point.globals.get(index).copied().unwrap_or_default();
     around(value, (fit.variance() * entry(&fit.inverse, index, index)).max(0.0).sqrt())
