@@ -1,11 +1,9 @@
-//! Figures of every crate, counted from its sources: code, tests, documentation, cycles, long functions,
-//! zeros without a reason.
+//! Figures of every crate, counted from its sources: code, tests, documentation, cycles, long functions.
 //!
 //!     cargo test -p trainer --test acceptance modules::figures -- --nocapture
 
 #![allow(clippy::print_stdout, reason = "its table is what it is run for")]
 
-use super::defaults::zeros_of;
 use super::graph::Graph;
 use super::source::{code_only, without_tests};
 use super::{LONGEST, crates};
@@ -60,51 +58,42 @@ struct Figures {
     long: usize,
     /// Longest function and its number of lines.
     longest: (String, usize),
-    /// Number of numeric defaults for absent values without a reason.
-    zeros: usize,
 }
 
 impl Figures {
-    fn of(name: &str, root: &Path) -> Self {
+    fn of(root: &Path) -> Self {
         let graph = Graph::read(root);
         let mut functions: Vec<(String, usize)> =
             graph.functions().map(|(place, name, lines)| (format!("{place}::{name}"), lines)).collect();
         functions.sort_by_key(|(_, lines)| *lines);
-        let (mut lines, mut zeros) = (Lines::default(), 0);
+        let mut lines = Lines::default();
         for file in files(root.parent().unwrap().to_str().unwrap(), "rs") {
             let place = file.to_string_lossy().into_owned();
             let is_test = place.ends_with("tests.rs") || place.contains("/tests/");
             let text = std::fs::read_to_string(&file).unwrap();
             lines = lines.with(Lines::of(&text, is_test));
-            zeros += if is_test { 0 } else { zeros_of(name, &text).len() };
         }
         Self {
             lines,
             circular: graph.circles().iter().map(Vec::len).sum(),
             long: functions.iter().filter(|(_, lines)| *lines > LONGEST).count(),
             longest: functions.pop().unwrap_or_default(),
-            zeros,
         }
     }
 }
 
 #[test]
 fn every_crate_is_counted() {
-    let found: Vec<(String, Figures)> = crates()
-        .into_iter()
-        .map(|(name, root)| {
-            let figures = Figures::of(&name, &root);
-            (name, figures)
-        })
-        .collect();
+    let found: Vec<(String, Figures)> =
+        crates().into_iter().map(|(name, root)| (name, Figures::of(&root))).collect();
     println!(
-        "| crate | code | tests | documents per 100 | modules in circles | functions over {LONGEST} | zeros | longest function |"
+        "| crate | code | tests | documents per 100 | modules in circles | functions over {LONGEST} | longest function |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|");
     for (name, own) in &found {
-        let Figures { lines, circular, long, longest, zeros } = own;
+        let Figures { lines, circular, long, longest } = own;
         println!(
-            "| `{name}` | {} | {} | {:.0} | {circular} | {long} | {zeros} | `{}`, {} |",
+            "| `{name}` | {} | {} | {:.0} | {circular} | {long} | `{}`, {} |",
             lines.code,
             lines.tests,
             lines.density(),
@@ -114,7 +103,7 @@ fn every_crate_is_counted() {
         assert!(lines.code > 0 && lines.documents > 0, "{name} holds nothing");
     }
     let all = found.iter().fold(Lines::default(), |all, (_, own)| all.with(own.lines));
-    println!("| all | {} | {} | {:.0} | | | | |", all.code, all.tests, all.density());
+    println!("| all | {} | {} | {:.0} | | | |", all.code, all.tests, all.density());
     assert!(all.code > 50_000, "{all:?}");
 }
 

@@ -1,6 +1,5 @@
-//! Checks of the modules of each crate: no cycles, no very long functions, no zeros without a reason.
+//! Checks of the modules of each crate: no cycles, no very long functions.
 
-mod defaults;
 mod figures;
 mod graph;
 mod known;

@@ -180,7 +180,7 @@ impl Actuator {
             let is_known = self.proportional.is_known() && self.derivative.is_known();
             effects.push(known("command_derivative", &[("time", derivative / proportional)], !is_known)?);
         }
-        let delay = self.delay.value().unwrap_or(0.0); // An unknown delay is looked for from none.
+        let delay = self.delay.value().unwrap_or(0.0);
         if delay > 0.0 || !self.delay.is_known() {
             effects.push(known("input_delay", &[("delay", delay)], !self.delay.is_known())?);
         }

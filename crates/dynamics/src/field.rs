@@ -66,6 +66,11 @@ pub(crate) struct Field<S> {
 }
 
 impl Field<f64> {
+    /// Returns the delay of the input in seconds; 0 if no effect delays it.
+    pub(crate) fn input_delay(&self) -> f64 {
+        self.terms.iter().find_map(|term| term.effect.input_delay(&term.values)).unwrap_or(0.0)
+    }
+
     /// Converts the field to another scalar type.
     pub(crate) fn over<S: Scalar>(&self) -> Field<S> {
         let Coefficients { inertia, damping, stiffness, rest_angle, input_gain } = self.nominal;

@@ -1,5 +1,10 @@
 //! Measured input.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "`Input::new` checks that there are samples, and a value for each time"
+)]
+
 use crate::error::DynamicsError;
 use serde::{Deserialize, Serialize};
 
@@ -287,9 +292,7 @@ impl Input {
         let before =
             index.checked_sub(1).and_then(|before| at(&self.times, before).zip(at(&self.values, before)));
         let Some((from, value)) = before else {
-            // An input without samples drives nothing.
-            let value = at(&self.values, 0).unwrap_or(0.0);
-            return Piece { from: until, until, terms: [value, 0.0, 0.0, 0.0], rate: [0.0; 4] };
+            return Piece { from: until, until, terms: [self.values[0], 0.0, 0.0, 0.0], rate: [0.0; 4] };
         };
         let length = until - from;
         let scaled = |[a, b, c, d]: Cubic| [a, b / length, c / length.powi(2), d / length.powi(3)];
@@ -307,11 +310,8 @@ impl Input {
     /// Returns the step to a sample from the one before, over the time between the two: the rate that a digital
     /// controller computes of a held input. 0 at the first sample.
     fn step_rate(&self, index: usize) -> f64 {
-        let at = |list: &[f64], index: usize| list.get(index).copied();
-        let before = index.checked_sub(1);
-        let step = |list: &[f64]| Some(at(list, index)? - at(list, before?)?);
-        // The first sample has none before it.
-        step(&self.values).zip(step(&self.times)).map_or(0.0, |(value, time)| value / time)
+        let Some(before) = index.checked_sub(1) else { return 0.0 };
+        (self.values[index] - self.values[before]) / (self.times[index] - self.times[before])
     }
 
     /// Returns the rate at a time in seconds, in the input's unit per second.

@@ -138,8 +138,7 @@ impl System {
     }
 
     pub(crate) fn input_delay(&self) -> f64 {
-        // Without the effect the input arrives at once.
-        self.field().terms.iter().find_map(|term| term.effect.input_delay(&term.values)).unwrap_or(0.0)
+        self.field().input_delay()
     }
 }
 
@@ -187,8 +186,8 @@ impl Field<f64> {
         let stuck = self.moving(state, 0.0);
         let torque = self.torque(state, &stuck);
         match self.holding_torque(state, &stuck) {
-            // A balance to rounding holds; the further course of the torque shows if the body is about to
-            // break away.
+            // A balance up to rounding counts as holding; the later terms of the torque show whether the body
+            // breaks away.
             Some(holding) if torque.abs() <= holding + self.balance(state) => stuck,
             _ if torque < 0.0 => self.moving(state, -1.0),
             _ => self.moving(state, 1.0),
@@ -200,7 +199,6 @@ impl Field<f64> {
     pub(crate) fn balance(&self, state: &State<f64>) -> f64 {
         let stuck = self.moving(state, 0.0);
         let torque = self.over::<Rounded>().torque(&state.over(), &stuck);
-        // Without dry friction nothing is held, and only rounding is left.
         BALANCE * self.holding_torque(state, &stuck).unwrap_or(0.0) + ROUNDING * torque.error
     }
 
@@ -245,7 +243,6 @@ pub(crate) struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     pub(crate) fn new(input: Option<&'a Input>, gain: f64, delay: f64, time: f64) -> Self {
-        // Without an input there is no piece to count.
         let index = input.map_or(0, |input| input.piece_index(time - delay));
         Self { input, index, gain, delay }
     }

@@ -1,6 +1,11 @@
-//! Checks on lists of times.
+//! Ends of lists of times, and checks on them.
 
 use crate::error::DynamicsError;
+
+/// Returns the first and the last of some times; zeros without any.
+pub(crate) fn ends(times: &[f64]) -> (f64, f64) {
+    times.first().copied().zip(times.last().copied()).unwrap_or_default()
+}
 
 /// Rejects times that are not finite or that decrease.
 pub(crate) fn check(times: &[f64]) -> Result<(), DynamicsError> {

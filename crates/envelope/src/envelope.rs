@@ -1,5 +1,7 @@
 //! Envelope of a record: the result of a pipeline.
 
+#![allow(clippy::indexing_slicing, reason = "`Envelope::new` refuses fewer than three peaks")]
+
 use crate::error::EnvelopeError;
 
 /// Fewest peaks that give a line and its error.
@@ -52,8 +54,7 @@ impl Envelope {
                 remedy: "Expected finite peaks at increasing times and a positive frequency.".to_owned(),
             });
         }
-        // At least three entries: checked above.
-        let first = times_s.first().copied().unwrap_or_default();
+        let first = times_s[0];
         let times_s = times_s.into_iter().map(|time| time - first).collect();
         let ratio = RatioDefinition::default();
         Ok(Self { times_s, log_amplitudes, omega_rad_s, log_std_errors: None, ratio })
@@ -102,9 +103,7 @@ impl Envelope {
     /// Returns the time from the first peak to the last one, in seconds, above 0.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        debug_assert!(self.len() >= FEWEST_PEAKS, "checked when it was made");
-        // Never absent: asserted above.
-        self.times_s.last().copied().unwrap_or(0.0)
+        self.times_s[self.times_s.len() - 1]
     }
 
     /// Returns the natural logarithms of the peaks' amplitudes, with the amplitude in the record's unit.

@@ -71,11 +71,10 @@ impl PaperPipeline {
             }
             log_amplitudes.push(amplitude.ln());
         }
-        debug_assert!(peak_times.len() >= FEWEST_PEAKS, "fewer are refused above");
-        // Never absent: asserted above.
-        let period_s = median(differences(&peak_times, 1)).unwrap_or(0.0);
-        // Never absent either.
-        let first_peak_s = peak_times.first().copied().unwrap_or(0.0);
+        let (Some(period_s), Some(&first_peak_s)) = (median(differences(&peak_times, 1)), peak_times.first())
+        else {
+            return Err(self.too_few(peaks.len(), record.unit()));
+        };
         Ok(Extraction {
             pipeline: "paper",
             because: None,
@@ -118,8 +117,7 @@ impl PaperPipeline {
         let first = clock.start_s();
         let times: Vec<f64> = clock.times_s.iter().map(|time| time - first).collect();
         let step = self.interpolation_step_s;
-        // A clock has at least two samples.
-        let duration = times.last().copied().unwrap_or_default();
+        let duration = clock.duration_s();
         if duration / step > MOST_POINTS as f64 {
             return Err(EnvelopeError::GridTooFine {
                 duration_s: duration,

@@ -329,12 +329,8 @@ fn center(turns: &[Turn]) -> Option<f64> {
 fn free_decay(turns: &[Turn], center: f64, floor: f64, period: f64) -> Vec<Turn> {
     let size = |turn: &Turn| (turn.value - center).abs();
     let turns = alternating(turns, center, period);
-    let largest = turns
-        .iter()
-        .enumerate()
-        .max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)))
-        // Without turning points nothing is skipped.
-        .map_or(0, |(index, _)| index);
+    let largest = turns.iter().enumerate().max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)));
+    let Some((largest, _)) = largest else { return turns };
     let turns: Vec<Turn> = turns.iter().skip(largest).copied().collect();
     let is_above_floor = |at: usize| {
         let near = turns.iter().take(at + NEIGHBORS + 1).skip(at.saturating_sub(NEIGHBORS));

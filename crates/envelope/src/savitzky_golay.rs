@@ -1,5 +1,7 @@
 //! Smoothing by local polynomials.
 
+#![allow(clippy::indexing_slicing, reason = "a window longer than the values is refused")]
+
 use crate::error::EnvelopeError;
 use nalgebra::{DMatrix, DVector};
 
@@ -35,12 +37,11 @@ pub fn savitzky_golay(values: &[f64], window: usize, order: usize) -> Result<Vec
     let inner = values
         .windows(window)
         .map(|part| part.iter().zip(&center).map(|(value, weight)| value * weight).sum::<f64>());
-    let end = |part: Option<&[f64]>| -> Vec<f64> {
-        // Both ends exist: a window longer than the values is refused above.
-        let fitted = &projection * DVector::from_row_slice(part.unwrap_or_default());
+    let end = |part: &[f64]| -> Vec<f64> {
+        let fitted = &projection * DVector::from_row_slice(part);
         fitted.iter().copied().collect()
     };
-    let (head, tail) = (end(values.get(..window)), end(values.get(values.len() - window..)));
+    let (head, tail) = (end(&values[..window]), end(&values[values.len() - window..]));
     Ok(head.into_iter().take(middle).chain(inner).chain(tail.into_iter().skip(middle + 1)).collect())
 }
 

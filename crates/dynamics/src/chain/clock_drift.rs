@@ -58,8 +58,7 @@ impl Step for ClockDrift {
         _: Observed,
         samples: &mut Samples<S>,
     ) {
-        // Without samples no clock is read.
-        let start = motion.times_s.first().copied().unwrap_or_default();
+        let Some(&start) = motion.times_s.first() else { return };
         for (stamp, time) in samples.stamps_s.iter_mut().zip(&samples.times_s) {
             let since = time - start;
             *stamp = *stamp + rate * since + change * (0.5 * since * since);

@@ -1,6 +1,8 @@
 //! Measurement chain: sensor, noise and the effects between a motion and a file, in the order of the
 //! hardware.
 
+#![allow(clippy::indexing_slicing, reason = "the number of times is checked before they are read")]
+
 use super::sensor_quantization;
 use super::step::{Extent, Sampled, SampledMotion, Samples};
 use crate::active::Active;
@@ -196,9 +198,7 @@ impl Extent {
         if let Some((index, (_, &value))) = pairs.enumerate().find(|(_, (before, after))| before >= after) {
             return Err(DynamicsError::BadTimes { index: index + 1, value });
         }
-        // There are at least two times, as checked above.
-        let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
-        let duration_s = last - first;
+        let duration_s = times[times.len() - 1] - times[0];
         let values = motion.observed(observed);
         Ok(Self {
             duration_s,

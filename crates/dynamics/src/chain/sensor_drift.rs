@@ -45,8 +45,7 @@ impl Step for SensorDrift {
         _: Observed,
         samples: &mut Samples<S>,
     ) {
-        // Without samples nothing drifts.
-        let start = samples.times_s.first().copied().unwrap_or_default();
+        let Some(&start) = samples.times_s.first() else { return };
         for (value, time) in samples.values.iter_mut().zip(&samples.times_s) {
             *value = *value + rate * (time - start);
         }

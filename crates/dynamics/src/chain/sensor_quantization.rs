@@ -57,8 +57,7 @@ impl Step for SensorQuantization {
         samples: &mut Samples<f64>,
         _: &mut R,
     ) {
-        // Without samples nothing is held.
-        let mut held = samples.values.first().copied().unwrap_or_default();
+        let Some(&(mut held)) = samples.values.first() else { return };
         for value in &mut samples.values {
             held = held.max(*value - hysteresis).min(*value + hysteresis);
             *value = held;

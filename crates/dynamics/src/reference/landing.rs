@@ -65,7 +65,7 @@ impl Run<'_> {
                     (_, false) => return Some(last.tau),
                 }
             } else {
-                // A short visit behind the edge may lie between two looks.
+                // The margin may be negative for a short time between two evaluations.
                 let falls = before.is_none_or(|before| before.margin > last.margin);
                 let rises = looks.get(number + 2).is_none_or(|next| next.margin > look.margin);
                 if last.margin > 0.0

@@ -1,5 +1,7 @@
 //! Samples and energy accounts along the steps.
 
+#![allow(clippy::indexing_slicing, reason = "the analysis has a weight for every stage")]
+
 use super::gauss::{Gauss, MOST_STAGES, basis};
 use super::motion::{Account, Motion, Worker};
 use super::step::{Step, state};
@@ -65,11 +67,8 @@ impl Recorder {
             self.motion.position.push(state.position);
             self.motion.velocity.push(state.velocity);
             self.motion.acceleration.push(acceleration);
-            for (number, account) in self.motion.accounts.iter_mut().enumerate() {
-                let work = work(&self.series, &basis, number) * step.size;
-                debug_assert!(number < self.work.len(), "account {number} of {}", self.work.len());
-                // Never absent: asserted above.
-                account.work.push(self.work.get(number).unwrap_or(&0.0) + work);
+            for (number, (account, done)) in self.motion.accounts.iter_mut().zip(&self.work).enumerate() {
+                account.work.push(done + work(&self.series, &basis, number) * step.size);
             }
             self.next += 1;
         }
@@ -98,13 +97,10 @@ impl Recorder {
                 *power = torque * state.velocity;
             }
             for (row, coefficients) in gauss.analysis.iter().zip(&mut self.series) {
-                debug_assert!(stage < row.len(), "stage {stage} of {}", row.len());
-                // Never absent: asserted above.
-                let weight = row.get(stage).copied().unwrap_or(0.0);
                 for (coefficient, power) in
                     coefficients.iter_mut().zip(powers).take(self.motion.accounts.len())
                 {
-                    *coefficient += weight * power;
+                    *coefficient += row[stage] * power;
                 }
             }
         }

@@ -1,5 +1,7 @@
 //! Integration from piece to piece.
 
+#![allow(clippy::indexing_slicing, reason = "an edge names an effect of its own field")]
+
 use super::gauss::Gauss;
 use super::motion::{Event, Happening, Motion};
 use super::recorder::Recorder;
@@ -68,8 +70,7 @@ impl<'a> Run<'a> {
         start.check()?;
         crate::times::check(times)?;
         let field = system.field();
-        // Without a requested time the run is over before it begins.
-        let (time, end) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
+        let (time, end) = crate::times::ends(times);
         let duration = end - time;
         let drive = Drive::new(input, field.nominal.input_gain, system.input_delay(), time);
         let mut vector = [0.0; LENGTH];
@@ -294,11 +295,8 @@ impl<'a> Run<'a> {
             Edge::Reversal => Happening::Reversal,
             Edge::BreakAway { .. } => Happening::BreakAway,
             Edge::Region { term, .. } => {
-                debug_assert!(term < self.field.terms.len(), "an edge of effect {term}");
-                // Never absent: asserted above.
-                let region = |mode: &Mode| mode.regions.get(term).copied().unwrap_or(0);
-                let effect = self.field.terms.get(term).map_or("", |term| term.effect.description().id);
-                Happening::Region { effect, from: region(&self.mode), to: region(&next) }
+                let effect = self.field.terms[term].effect.description().id;
+                Happening::Region { effect, from: self.mode.regions[term], to: next.regions[term] }
             }
         };
         self.mode = next;

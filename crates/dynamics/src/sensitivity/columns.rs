@@ -1,5 +1,7 @@
 //! Taylor series of the derivatives of the state.
 
+#![allow(clippy::indexing_slicing, reason = "a remainder is below the number of lanes")]
+
 use super::graph::MOST_STATES;
 use super::series::{LENGTH, Series, head};
 
@@ -88,8 +90,7 @@ impl Columns {
         let wide = self.blocks.get(column / LANES).and_then(|block| block.states.get(state));
         let [first, ..] = wide.unwrap_or(&[[0.0; LANES]; LENGTH]);
         debug_assert!(column < self.columns && state < MOST_STATES, "column {column}, state {state}");
-        // Never absent: a remainder is below the number of lanes.
-        first.get(column % LANES).copied().unwrap_or(0.0)
+        first[column % LANES]
     }
 
     /// Returns the same derivative as a mutable reference.

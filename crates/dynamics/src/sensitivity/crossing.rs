@@ -31,7 +31,6 @@ impl March<'_> {
                     from_rest(margin, 0, -known..=known, until, resolution)
                 }
                 Edge::Reversal if rests => {
-                    // A margin of degree 1 has no curvature.
                     let next = margin.get(2).map_or(0.0, |next| 2.0 * next.abs());
                     let balance = balance / field.nominal.inertia;
                     from_rest(
@@ -95,10 +94,9 @@ fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> 
     // On the edge itself the lowest coefficients are rounding; the further course of the margin decides.
     let (mut lowest, mut rest, mut margin, mut power) = (*first, rest, margin, 1.0);
     let rounding = |rest: &[f64], power: f64| {
-        // Behind the last coefficient there is none, and without a resolution nothing is rounding.
+        let Some(resolution) = resolution else { return 0.0 };
         let next = rest.first().map_or(0.0, |next| next.abs() * power);
-        // Without a resolution nothing is rounding.
-        resolution.map_or(0.0, |resolution| ON_THE_EDGE * total + next * resolution)
+        ON_THE_EDGE * total + next * resolution
     };
     while lowest.abs() * power <= rounding(rest, power) {
         margin = rest;
@@ -120,7 +118,7 @@ fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> 
             return Some(crate::root::bracketed(from, to, |time| value(margin, time)));
         }
         if falling && !still_falling {
-            // A short visit behind the edge, between two looks.
+            // The margin may be negative for a short time between two evaluations.
             let lowest = crate::root::bracketed(from, to, |time| -slope(margin, time));
             if value(margin, lowest) < 0.0 {
                 return Some(crate::root::bracketed(from, lowest, |time| value(margin, time)));

@@ -1,5 +1,7 @@
 //! Recorded field: the graph of its operations.
 
+#![allow(clippy::indexing_slicing, reason = "no degree exceeds the length of a series")]
+
 use super::expression::{Expression, Operation, Recorder};
 use super::node::Node;
 use super::program::Program;
@@ -184,8 +186,7 @@ impl Graph {
     #[inline]
     pub(crate) fn coefficient(&self, number: usize, degree: usize) -> f64 {
         debug_assert!(degree < LENGTH, "coefficient {degree} of {LENGTH}");
-        // Never absent: asserted above.
-        self.series(number).get(degree).copied().unwrap_or(0.0)
+        self.series(number)[degree]
     }
 
     /// Returns the state variable that a node is identical to; `None` if it is another expression.

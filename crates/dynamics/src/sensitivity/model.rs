@@ -144,9 +144,7 @@ impl Model {
                 *slot = value;
             }
         }
-        let delay = self.field.terms.iter().find_map(|term| term.effect.input_delay(&term.values));
-        // Without the effect the input arrives at once.
-        self.delay = delay.unwrap_or(0.0);
+        self.delay = self.field.input_delay();
         self.rounded = self.field.over();
         for piece in &mut self.graphs {
             piece.current = false;

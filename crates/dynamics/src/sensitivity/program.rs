@@ -1,8 +1,13 @@
 //! Condensed program of a graph's operations.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "instructions name nodes of the graph that they were compiled from"
+)]
+
 use super::expression::Operation;
 use super::node::Node;
-use super::series::{LENGTH, Series, convolve, dot_reversed, head};
+use super::series::{Series, convolve, dot_reversed, head};
 
 /// Instructions that compute one coefficient of every series. A chain of sums and of products with constants
 /// is condensed into one linear combination.
@@ -96,8 +101,7 @@ impl Program {
 
     fn condense(&mut self, number: usize, node: &Node, nodes: &[Node], forms: &[Form]) -> Form {
         debug_assert!(forms.len() == number, "operands come before what they are needed for");
-        // The form of a missing operand is 0; the assertion rules this out.
-        let of = |operand: usize| forms.get(operand).cloned().unwrap_or_default();
+        let of = |operand: usize| forms[operand].clone();
         let constant = |operand: usize| nodes.get(operand).is_some_and(|node| node.constant);
         let form = match node.operation {
             Operation::Leaf(_) => return Form::of(number),
@@ -148,9 +152,7 @@ impl Program {
         for instruction in &self.instructions {
             match *instruction {
                 Instruction::Linear { target, from, until, offset } => {
-                    debug_assert!(from <= until && until <= self.terms.len());
-                    // Within the terms, as `condense` numbered them.
-                    let terms = self.terms.get(from..until).unwrap_or_default();
+                    let terms = &self.terms[from..until];
                     let start = if degree == 0 { offset } else { 0.0 };
                     let sum = terms.iter().fold(start, |sum, &(number, factor)| {
                         sum + factor * coefficient(series, number, degree)
@@ -158,18 +160,12 @@ impl Program {
                     put(series, target, degree, sum);
                 }
                 Instruction::Product { target, a, b } => {
-                    debug_assert!(a.max(b) < series.len(), "nodes {a} and {b} of {}", series.len());
-                    // Never absent: asserted above.
-                    let value = pair(series, a, b).map_or(0.0, |(a, b)| convolve(a, b, degree));
-                    put(series, target, degree, value);
+                    put(series, target, degree, convolve(&series[a], &series[b], degree));
                 }
                 Instruction::Quotient { target, a, b } => {
-                    debug_assert!(target.max(b) < series.len(), "nodes {target} and {b} of {}", series.len());
                     // a = q·b: everything but q_degree·b₀ is known.
-                    let known = pair(series, target, b).map_or(0.0, |(quotient, b)| {
-                        let [_, b @ ..] = b;
-                        dot_reversed(head(quotient, degree), head(b, degree))
-                    });
+                    let [_, divisor @ ..] = &series[b];
+                    let known = dot_reversed(head(&series[target], degree), head(divisor, degree));
                     let value = (coefficient(series, a, degree) - known) / coefficient(series, b, 0);
                     put(series, target, degree, value);
                 }
@@ -197,28 +193,18 @@ impl Program {
 
 #[inline]
 fn coefficient(series: &[Series], number: usize, degree: usize) -> f64 {
-    debug_assert!(number < series.len() && degree < LENGTH, "coefficient {degree} of node {number}");
-    // Never absent: asserted above; a well-predicted branch costs less than the code of a panic.
-    series.get(number).and_then(|series| series.get(degree)).copied().unwrap_or(0.0)
-}
-
-#[inline]
-fn pair(series: &[Series], a: usize, b: usize) -> Option<(&Series, &Series)> {
-    Some((series.get(a)?, series.get(b)?))
+    series[number][degree]
 }
 
 #[inline]
 fn put(series: &mut [Series], number: usize, degree: usize, value: f64) {
-    if let Some(slot) = series.get_mut(number).and_then(|series| series.get_mut(degree)) {
-        *slot = value;
-    }
+    series[number][degree] = value;
 }
 
 /// Computes coefficient `degree` ≥ 1 of g with g′ = f·a′: (1/d)·Σ j·a_j·f_{d−j}.
 #[inline]
 fn weighted(series: &[Series], a: usize, f: usize, degree: usize) -> f64 {
-    let Some((a, f)) = pair(series, a, f) else { return 0.0 };
-    let reversed = head(f, degree).iter().rev();
-    let terms = a.iter().zip(1_u32..).skip(1).zip(reversed);
+    let reversed = head(&series[f], degree).iter().rev();
+    let terms = series[a].iter().zip(1_u32..).skip(1).zip(reversed);
     terms.map(|((a, j), f)| f64::from(j - 1) * a * f).sum::<f64>() / degree as f64
 }

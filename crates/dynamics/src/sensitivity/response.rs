@@ -56,7 +56,6 @@ impl Response {
     #[must_use]
     pub fn position_row(&self, sample: usize) -> &[f64] {
         let from = sample * self.columns;
-        // Beyond the last sample there is no row.
-        self.position_sensitivity.get(from..from + self.columns).unwrap_or_default()
+        self.position_sensitivity.get(from..from + self.columns).unwrap_or(&[])
     }
 }

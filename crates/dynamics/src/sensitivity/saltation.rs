@@ -23,8 +23,7 @@ impl March<'_> {
             && self.mode.direction == old.direction
             && self.model.field.holding_torque(&self.point(), &old).is_none()
         {
-            // At rest in balance the torque does not tell the direction of the further motion; the series has
-            // told it.
+            // At rest in balance the torque does not show the direction of the further motion; the series does.
             self.mode = self.model.field.moving(&self.point(), -old.direction);
         }
         let after = self.rates();
@@ -78,8 +77,7 @@ impl March<'_> {
         graph.extend(1);
         let speed = graph.coefficient(node, 1);
         graph.differentiate(node, 0);
-        // The derivative with respect to a leaf that a margin does not depend on is an empty series, and
-        // zero.
+        // The series of a derivative with respect to a leaf that a margin does not depend on is empty.
         let partial = |leaf: usize| graph.derivative(leaf).first().copied().unwrap_or(0.0);
         for (column, (shift, place)) in shifts.iter_mut().zip(free.iter()).enumerate() {
             let mut moved: f64 =

@@ -117,7 +117,6 @@ impl March<'_> {
 fn first_term(series: &Series, time: f64) -> f64 {
     let mut terms =
         series.iter().zip(0_i32..).map(|(coefficient, degree)| coefficient.abs() * time.powi(degree));
-    // If every term is zero, the variable stays in place.
     terms.find(|term| *term > 0.0).unwrap_or(0.0)
 }
 

@@ -247,21 +247,17 @@ fn advance<M: Mechanism>(
         }
     }
     let singular = |at: usize| {
-        // The place is that of a joint.
-        let joint = mechanism.names().into_iter().nth(at).unwrap_or_default();
-        M::Error::from(TreeError::NoInertia { joint })
+        let name = mechanism.names().into_iter().nth(at);
+        M::Error::from(TreeError::NoInertia { joint: name.unwrap_or_else(|| format!("joint {}", at + 1)) })
     };
     let accelerate = |bias: Vec<f64>, given: &[f64]| {
         let sum: Vec<f64> = given.iter().zip(bias).map(|(given, bias)| given - bias).collect();
         solved(&matrix, sum).map_err(singular)
     };
     let (mut given, mut bounds) = (Vec::with_capacity(joints.len()), Vec::with_capacity(joints.len()));
-    for (at, (joint, torque)) in joints.iter_mut().zip(torque).enumerate() {
-        // The lengths were checked.
-        let [position, velocity] =
-            // The lengths were checked.
-            [&state.position, &state.velocity].map(|own| own.get(at).copied().unwrap_or(0.0));
-        let (own, bound) = joint.torque(time, [position, velocity, *torque], step);
+    let moving = state.position.iter().zip(&state.velocity);
+    for ((joint, torque), (position, velocity)) in joints.iter_mut().zip(torque).zip(moving) {
+        let (own, bound) = joint.torque(time, [*position, *velocity, *torque], step);
         given.push(torque + own);
         bounds.push(step * bound);
     }
