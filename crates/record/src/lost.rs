@@ -45,6 +45,9 @@ const NEARER: f64 = 3.0;
 /// for up to one interval.
 const LATENESS: f64 = 1.2;
 
+/// Deviation of every step from the mean one, as a part of it, below which no sample is missing.
+const ALIKE: f64 = 0.3;
+
 impl Numbers {
     /// Numbers the samples by rows, with no losses.
     pub(crate) fn plain(ends: &[(f64, f64)], rows: &[f64]) -> Self {
@@ -70,6 +73,9 @@ impl Numbers {
         let sizes: Vec<f64> =
             ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.0 - one.0).collect();
         let grouped = ends.len() < values.len();
+        if !grouped && are_alike(ends, &sizes) {
+            return None;
+        }
         // A record may end within a group, whose last sample is then missing.
         let whole = ends.len() - usize::from(grouped);
         let before = bend(ends, whole);
@@ -99,6 +105,13 @@ impl Numbers {
         let of_samples = place(ends, &counted, rows, values);
         Some(Self { of_samples, ends: counted, lost: last as usize })
     }
+}
+
+/// Returns `true` if the times between single samples are so much alike that none is missing.
+fn are_alike(ends: &[(f64, f64)], sizes: &[f64]) -> bool {
+    let steps = || ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1);
+    let mean = steps().sum::<f64>() / sizes.iter().sum::<f64>();
+    steps().zip(sizes).all(|(step, size)| (step / (mean * size) - 1.0).abs() < ALIKE)
 }
 
 /// Fits a line with a bend to the complete groups.
