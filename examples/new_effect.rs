@@ -2,8 +2,9 @@
 //!
 //! An effect is an entry of the registry and cannot be added from outside of the workspace. This example
 //! simulates a record of a system with an effect that the program does not know, and prints the diagnosis of
-//! that record. Then it prints the steps and the files that add the effect. The test
-//! `recipe::a_new_effect_takes_three_files_and_is_diagnosed_and_hidden` follows the same steps with the same
+//! that record. Then it prints the steps and the files that add the effect; its reference is in
+//! `literature.bib` already. The test
+//! `recipe::a_new_effect_takes_eight_places_and_is_diagnosed_and_hidden` follows the same steps with the same
 //! files in a copy of the workspace.
 //!
 //!     cargo run -p ringdown-lab --example new_effect

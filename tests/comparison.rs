@@ -138,6 +138,25 @@ fn an_unknown_method_is_refused_with_the_nearest_name() {
     assert_eq!(output.status.code(), Some(2));
 }
 
+/// `compare.methods=gru` said "unknown method" of a learner that `trainer new` had written.
+#[test]
+fn a_learner_among_methods_is_refused_with_the_command_that_runs_it() {
+    let runs_it = "`trainer configs/learn.toml learn.learners=state-space`";
+    for arguments in [
+        &["configs/compare.toml", "compare.methods=state-space"][..],
+        &["configs/pinn.toml", "estimator=state-space"],
+        &["sweep", "configs/pinn.toml", "estimator=pinn,state-space"],
+    ] {
+        let output = trainer(arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(
+            message.contains("`state-space` is a learner of dynamics") && message.contains(runs_it),
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn threads_do_not_change_a_bit() {
     let run = |threads| {

@@ -301,14 +301,3 @@ fn the_diagnosis_that_the_documents_show_is_what_the_command_says() {
         }
     }
 }
-
-#[test]
-fn the_number_of_effects_is_the_registrys() {
-    let listed: serde_json::Value =
-        serde_json::from_slice(&trainer(&["list", "effects", "--json"]).stdout).unwrap();
-    let said = format!("which of {} effects", listed["effects"].as_array().unwrap().len());
-    for document in ["README.md", "book/src/introduction.md"] {
-        let text = std::fs::read_to_string(root().join(document)).unwrap();
-        assert!(text.contains(&said), "{document} does not say `{said}`");
-    }
-}

@@ -176,6 +176,10 @@ fn what_nothing_can_be_learned_from_is_refused() {
     refused(&[&of("test_records=20")], "leave none to train on");
     refused(&[&of("warm_up_s=5")], "too few for a part of its own");
     refused(&["learn.learners=sindi"], "did you mean `sindy`?");
+    refused(
+        &["learn.learners=ols"],
+        "`ols` is an estimator of the damping and no learner of dynamics; run it with",
+    );
     refused(&["learn.baselines=arks"], "baseline");
     refused(&["sindy.library=theta,thetta"], "library term");
     refused(&["sindy.terms=sin(2*omega)"], "at character 7: `omega` is not known");

@@ -1,5 +1,5 @@
-//! The recipes of CONTRIBUTING.md for a new estimator and a new effect, followed to the letter in a copy of the workspace: files
-//! and lines are read from its steps.
+//! The recipes of CONTRIBUTING.md for a new estimator, a new learner and a new effect, followed to the letter in a copy of the
+//! workspace: commands, files and lines are read from it.
 
 use crate::documents::files;
 use crate::support::{root, trainer};
@@ -109,74 +109,79 @@ fn compile_fast(home: &Path) {
     fs::write(path, manifest).unwrap();
 }
 
-/// Runs one test target in a copy, in the workspace's own target folder and for the whole workspace: cargo joins the
-/// features of all that it is asked to build, so that only then the libraries built already serve.
-fn test_in(home: &Path, target: &str, filter: &str) -> Output {
+/// Runs cargo in a copy, in the workspace's own target folder.
+fn cargo_in(home: &Path, arguments: &[&str]) -> Output {
+    let (command, rest) = arguments.split_first().unwrap();
     Command::new(env!("CARGO"))
-        .args(["test", "--offline", "--workspace", "--test", target, "--", filter])
+        .args([command, "--offline"])
+        .args(rest)
         .env("CARGO_TARGET_DIR", root().join("target"))
         .current_dir(home)
         .output()
         .unwrap()
 }
 
-/// An estimator of one's own: the decay from the first to the last peak. A copied baseline becomes it by
-/// changing its name, its tags and its answer.
+/// Runs one test target in a copy, for the whole workspace: cargo joins the features of all that it is asked to build, so
+/// that only then the libraries built already serve.
+fn test_in(home: &Path, target: &str, filter: &str) -> Output {
+    cargo_in(home, &["test", "--workspace", "--test", target, "--", filter])
+}
+
+/// Runs the command of a recipe in a copy of the workspace, with a name for NAME and words replaced; returns what it says.
+fn follow(heading: &str, name: &str, home: &Path, replaced: &[(&str, &str)]) -> String {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let section = text.split(&format!("\n## {heading}\n")).nth(1).unwrap();
+    let command = section.lines().find_map(|line| line.strip_prefix("    cargo run -p trainer -- ")).unwrap();
+    let command = command.replace("NAME", name);
+    let command = replaced.iter().fold(command, |command, (from, to)| command.replace(from, to));
+    let mut arguments: Vec<&str> = command.split(' ').collect();
+    arguments.extend(["--workspace", home.to_str().unwrap()]);
+    let written = trainer(&arguments);
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    String::from_utf8(written.stdout).unwrap()
+}
+
+/// The recipe's command writes the files and lines that the recipe names. The skeleton passes the whole battery, which
+/// sees when its descent is cut short.
 #[test]
 fn a_new_estimator_takes_four_files_and_passes_the_battery() {
     let scratch = workspace();
     let home = scratch.path();
+    let written = follow("Adding an estimator", "short-descent", home, &[]);
+    assert!(written.starts_with("short-descent: estimator, which reads the damping"), "{written}");
 
-    let steps = steps("Adding an estimator", "endpoints");
+    let steps = steps("Adding an estimator", "short-descent");
     let [manifest, method, dependency, entry] = &steps[..] else { panic!("{steps:?}") };
-    // Steps 1 and 2.
-    let [manifest, template, package] = &manifest[..] else { panic!("{manifest:?}") };
-    let manifest = home.join(manifest);
-    copy(&home.join(template), manifest.parent().unwrap());
-    edit(&manifest, "estimator-baseline", package);
-    let method = home.join(&method[0]);
-    edit(&method, "id: \"baseline\"", "id: \"endpoints\"");
-    edit(&method, "&[Tag::Null]", "&[]");
-    edit(&method, ", Tag};", "};");
-    edit(
-        &method,
-        "decay_rate: 0.0",
-        "decay_rate: match (envelope.times_s().last(), logs.first(), logs.last()) {
-                (Some(span), Some(first), Some(last)) => (first - last) / span,
-                _ => 0.0,
-            }",
-    );
-    // Steps 3 and 4.
-    let [file, line] = &dependency[..] else { panic!("{dependency:?}") };
-    edit(&home.join(file), "[dependencies]\n", &format!("[dependencies]\n{line}\n"));
-    let [file, line] = &entry[..] else { panic!("{entry:?}") };
-    edit(&home.join(file), "estimator_baseline::ENTRY,", &format!("estimator_baseline::ENTRY,\n    {line}"));
     let (new, longer) = added(home);
-    assert_eq!(new, ["crates/estimators/endpoints/Cargo.toml", "crates/estimators/endpoints/src/lib.rs"]);
-    let lines = longer.iter().map(|(file, lines)| (file.as_str(), *lines)).collect::<Vec<_>>();
-    assert_eq!(lines, [("crates/registry/Cargo.toml", 1), ("crates/registry/src/lib.rs", 1)]);
+    assert_eq!(new, [manifest[0].as_str(), method[0].as_str()]);
+    assert_eq!(longer, [(dependency[0].clone(), 1), (entry[0].clone(), 1)]);
+    let has = |file: &str, words: &str| fs::read_to_string(home.join(file)).unwrap().contains(words);
+    assert!(has(&manifest[0], &format!("name = \"{}\"", manifest[1])));
+    assert!(has(&dependency[0], &dependency[1]) && has(&entry[0], &entry[1].replace('-', "_")));
 
-    let battery = |filter: &str| test_in(home, "battery", filter);
-    let exact = battery("endpoints::it_recovers_a_pure_exponential");
-    let text = String::from_utf8_lossy(&exact.stdout).into_owned();
-    assert!(exact.status.success(), "{text}{}", String::from_utf8_lossy(&exact.stderr));
-    assert!(text.contains("1 passed"), "{text}");
-    // Two peaks are not all of them: the battery sees it.
-    let rough = battery("endpoints::it_agrees_with_least_squares");
+    let battery = test_in(home, "battery", "short-descent::");
+    let text = String::from_utf8_lossy(&battery.stdout).into_owned();
+    assert!(battery.status.success(), "{text}{}", String::from_utf8_lossy(&battery.stderr));
+    assert!(
+        text.contains("short-descent::it_agrees_with_least_squares") && text.contains(" 0 failed"),
+        "{text}"
+    );
+    edit(&home.join(&method[0]), "const STEPS: u64 = 2000;", "const STEPS: u64 = 3;");
+    let rough = test_in(home, "battery", "short-descent::it_agrees_with_least_squares");
     assert!(!rough.status.success(), "{}", String::from_utf8_lossy(&rough.stdout));
 }
 
-/// A damping of one's own, from its law to the answer of a diagnosis and to trials that hide it: a file and its lines in each
-/// of `dynamics`, `diagnosis` and `trials`, and nothing else.
+/// A damping of one's own, from its law to the answer of a diagnosis, to trials that hide it and to the book's gallery.
 #[test]
-fn a_new_effect_takes_three_files_and_is_diagnosed_and_hidden() {
+fn a_new_effect_takes_eight_places_and_is_diagnosed_and_hidden() {
     let scratch = workspace();
     let home = scratch.path();
+    copy(&root().join("book"), &home.join("book"));
     let file = |name: &str| root().join("tests/recipe").join(name);
 
     let steps = steps("Adding an effect", "sine_drag");
     let places: Vec<_> = steps.iter().map(|step| home.join(&step[0])).collect();
-    let [law, laws, registry, candidate, candidates, trial, trials] = &places[..] else {
+    let [law, laws, registry, candidate, candidates, trial, trials, literature] = &places[..] else {
         panic!("{steps:?}")
     };
     // A line for the new effect below one that there is.
@@ -197,20 +202,30 @@ fn a_new_effect_takes_three_files_and_is_diagnosed_and_hidden() {
     fs::copy(file("trial.rs"), trial).unwrap();
     below(trials, "mod quadratic_drag;", "mod sine_drag;");
     below(trials, "    quadratic_drag::EFFECT,", "    sine_drag::EFFECT,");
+    // Other effects cite the work already.
+    assert!(fs::read_to_string(literature).unwrap().contains("{nayfeh1979,"));
 
     let (new, longer) = added(home);
     assert_eq!(new, [3, 0, 5].map(|step: usize| steps[step][0].as_str()));
     let lines: Vec<usize> = longer.iter().map(|(_, lines)| *lines).collect();
     assert_eq!((longer.len(), lines), (4, vec![2, 2, 1, 2]), "{longer:?}");
+    let passes = |output: Output, words: &str| {
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(text.contains(words), "{text}");
+    };
     for (owner, test) in [("diagnosis", "diagnosed"), ("trials", "hidden")] {
         let tests = home.join("crates").join(owner).join("tests");
         fs::create_dir(&tests).unwrap();
         fs::copy(file(&format!("{test}.rs")), tests.join(format!("sine_drag_{test}.rs"))).unwrap();
-        let output = test_in(home, &format!("sine_drag_{test}"), "");
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
-        assert!(text.contains("1 passed"), "{text}");
+        passes(test_in(home, &format!("sine_drag_{test}"), ""), "1 passed");
     }
+    passes(cargo_in(home, &["test", "-p", "dynamics", "--lib", "sine_drag"]), "1 passed");
+    passes(test_in(home, "other_simulators", ""), " 0 failed");
+    passes(cargo_in(home, &["test", "--workspace", "--example", "gallery", "--", "--write"]), "is written");
+    assert!(home.join("book/src/effects/sine_drag.svg").exists());
+    let page = fs::read_to_string(home.join("book/src/effects/dissipative.md")).unwrap();
+    assert!(page.contains("## Sine drag"), "{page}");
 }
 
 /// The recipe's own command writes the files that the recipe names, and nothing else, for each kind that it names.
@@ -218,7 +233,6 @@ fn a_new_effect_takes_three_files_and_is_diagnosed_and_hidden() {
 fn a_new_learner_takes_the_files_that_the_recipe_names() {
     let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
     let section = text.split("\n## Adding a learner\n").nth(1).unwrap().split("\n## ").next().unwrap();
-    let command = section.lines().find_map(|line| line.strip_prefix("    cargo run -p trainer -- ")).unwrap();
     let words: Vec<String> =
         section.split('`').skip(1).step_by(2).map(|word| word.replace("NAME", "own_learner")).collect();
     let (source, registry, config) = (&words[0], format!("crates/learn/src/{}", words[1]), &words[2]);
@@ -227,11 +241,7 @@ fn a_new_learner_takes_the_files_that_the_recipe_names() {
         let scratch = workspace();
         let home = scratch.path();
         copy(&root().join("configs"), &home.join("configs"));
-        let command = command.replace("NAME", "own-learner").replace("sequence", kind);
-        let mut arguments: Vec<&str> = command.split(' ').collect();
-        arguments.extend(["--workspace", home.to_str().unwrap()]);
-        let written = trainer(&arguments);
-        assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+        follow("Adding a learner", "own-learner", home, &[("sequence", kind)]);
         assert_eq!(added(home), (vec![source.clone()], vec![(registry.clone(), 2)]));
         let config = fs::read_to_string(home.join(config.replace('_', "-"))).unwrap();
         assert!(config.contains("learners = [\"own-learner\"]"), "{config}");
@@ -249,28 +259,23 @@ fn a_new_learner_takes_one_command_and_trains() {
     copy(&root().join("configs"), &home.join("configs"));
     let place = home.to_str().unwrap();
     for (name, kind) in [("one-layer", "sequence"), ("power-torque", "field"), ("plain-law", "regressor")] {
-        let written = trainer(&["new", "estimator", name, "--kind", kind, "--workspace", place]);
+        let written = trainer(&["new", "learner", name, "--kind", kind, "--workspace", place]);
         assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
-        let again = trainer(&["new", "estimator", name, "--kind", kind, "--workspace", place]);
+        let again = trainer(&["new", "learner", name, "--kind", kind, "--workspace", place]);
         assert_eq!(again.status.code(), Some(2));
     }
     let run = |arguments: &[&str]| {
-        let output = Command::new(env!("CARGO"))
-            .args(arguments)
-            .env("CARGO_TARGET_DIR", root().join("target"))
-            .current_dir(home)
-            .output()
-            .unwrap();
+        let output = cargo_in(home, arguments);
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
         text
     };
-    let text = run(&["test", "--offline", "-p", "learn", "--lib", "--", "learners::tests::a_model_predicts"]);
+    let text = run(&["test", "-p", "learn", "--lib", "--", "learners::tests::a_model_predicts"]);
     assert!(text.contains("a_model_predicts_the_same_from_its_file ... ok"), "{text}");
-    let listed = run(&["run", "--offline", "-p", "trainer", "--", "list", "learners"]);
+    let listed = run(&["run", "-p", "trainer", "--", "list", "learners"]);
     assert!(["one-layer", "power-torque", "plain-law"].iter().all(|name| listed.contains(name)), "{listed}");
     let config = "configs/learn/one-layer.toml";
-    let trained = run(&["run", "--offline", "-p", "trainer", "--", config, "one-layer.epochs=2", "--json"]);
+    let trained = run(&["run", "-p", "trainer", "--", config, "one-layer.epochs=2", "--json"]);
     let trained: serde_json::Value = serde_json::from_str(&trained).unwrap();
     let rows = trained["results"].as_array().unwrap();
     let error = |id: &str| {
@@ -289,12 +294,33 @@ fn a_name_that_cannot_be_one_and_a_place_that_is_no_checkout_are_refused() {
         ("loop", "is not an identifier"),
         ("fine", "is not in a checkout of Ringdown"),
     ] {
-        let output = trainer(&["new", "estimator", name, "--kind", "field", "--workspace", place]);
+        let output = trainer(&["new", "learner", name, "--kind", "field", "--workspace", place]);
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(words), "{name}: {message}");
     }
-    let taken =
-        trainer(&["new", "estimator", "lstm", "--kind", "sequence", "--workspace", root().to_str().unwrap()]);
-    assert!(String::from_utf8(taken.stderr).unwrap().contains("there is a learner `lstm` already"));
+    let home = root();
+    let taken = |words: &[&str]| {
+        let output = trainer(&[&["new"], words, &["--workspace", home.to_str().unwrap()]].concat());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(taken(&["learner", "lstm", "--kind", "sequence"]).contains("there is a learner `lstm` already"));
+    assert!(taken(&["estimator", "lstm"]).contains("there is an estimator `lstm` already"));
+    assert!(taken(&["estimator", "ols"]).contains("there is an estimator `ols` already"));
+}
+
+/// The form of the command before learners had one of their own; it says that it makes a learner.
+#[test]
+fn a_new_estimator_of_a_kind_is_a_learner() {
+    let scratch = workspace();
+    let home = scratch.path();
+    let place = home.to_str().unwrap();
+    let written = trainer(&["new", "estimator", "own", "--kind", "field", "--workspace", place]);
+    let said = String::from_utf8(written.stdout).unwrap();
+    assert!(said.starts_with("own: learner, which learns dynamics"), "{said}");
+    assert!(
+        home.join("crates/learn/src/learners/own.rs").exists()
+            && home.join("configs/learn/own.toml").exists()
+    );
+    assert!(!home.join("crates/estimators/own").exists());
 }

@@ -42,9 +42,8 @@ pub(crate) fn pages() -> Result<Vec<(String, String)>, Error> {
     for (name, class, heading, first) in PAGES {
         let mut text = format!("# {heading}\n\n{first}\n");
         for effect in effects().filter(|effect| effect.class == class) {
-            let plot = panels(effect)?.map(|panels| svg(&panels));
-            section(&mut text, effect, plot.is_some());
-            files.extend(plot.map(|plot| (format!("{}.svg", effect.id), plot)));
+            section(&mut text, effect);
+            files.push((format!("{}.svg", effect.id), svg(&panels(effect)?)));
         }
         text.push_str(
             "\n---\n\nGenerated from the registry by `cargo run -p ringdown-lab --example gallery -- --write`; every record \
@@ -56,12 +55,10 @@ pub(crate) fn pages() -> Result<Vec<(String, String)>, Error> {
 }
 
 /// One effect. Writing to a text cannot fail.
-fn section(text: &mut String, effect: &Description, has_plot: bool) {
+fn section(text: &mut String, effect: &Description) {
     let _ = writeln!(text, "\n## {}\n\n`{}` adds  `{}`\n", effect.title, effect.id, effect.equation);
     let _ = writeln!(text, "**Signature.** {}\n", effect.tell_tale);
-    if has_plot {
-        let _ = writeln!(text, "![{}]({}.svg)\n", effect.title, effect.id);
-    }
+    let _ = writeln!(text, "![{}]({}.svg)\n", effect.title, effect.id);
     text.push_str(
         "| parameter | unit (angle) | unit (displacement) | values | meaning |\n|---|---|---|---|---|\n",
     );

@@ -4,18 +4,13 @@ use crate::plot::Panel;
 use dynamics::{Class, Description, Kind};
 use ringdown_lab::{Error, Excitation, Nominal, Record, Simulation, Waveform};
 
-/// A strength for each effect, per unit of inertia, that shows over 25 s at 3.5 Hz from 0.7 rad. One without a line here has
-/// a section without a plot.
+/// Strengths, per unit of inertia, that a plot shows better than the effect's own example.
 const STRENGTHS: &[(&str, &[f64])] = &[
-    ("coulomb_friction", &[1.0]),
     ("stribeck_friction", &[0.5, 2.0, 1.0]),
     ("quadratic_drag", &[0.2]),
     ("hysteresis", &[2.0, 0.05]),
     ("cubic_stiffness", &[-60.0]),
-    ("asymmetric_stiffness", &[60.0]),
-    ("gravity", &[150.0, 0.4]),
     ("constant_torque", &[30.0]),
-    ("backlash", &[0.01]),
     ("end_stop", &[0.45, 20_000.0, 0.05]),
     ("stiffness_drift", &[0.004]),
     ("damping_drift", &[0.1]),
@@ -23,30 +18,20 @@ const STRENGTHS: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[0.05, 40.0, 0.2]),
     ("input_delay", &[0.03]),
     ("input_saturation", &[40.0]),
-    ("command_derivative", &[0.02]),
     ("torque_limit", &[90.0]),
     ("load_friction", &[1.0, 0.05]),
     ("directional_friction", &[1.0, 1.5]),
     ("friction_drift", &[2.0, -0.2]),
     ("drive_dead_band", &[0.05]),
     ("speed_torque_limit", &[120.0, 6.0]),
-    ("sensor_lag", &[0.01]),
-    ("sensor_nonlinearity", &[0.02, 0.4]),
-    ("sensor_drift", &[0.01]),
-    ("sensor_saturation", &[0.5]),
-    ("sensor_quantization", &[0.05]),
-    ("outliers", &[0.03, 0.2]),
-    ("dropouts", &[0.3, 8.0]),
-    ("clock_drift", &[0.002, 0.0002]),
-    ("timestamp_jitter", &[0.001]),
-    ("timestamp_batching", &[0.06, 0.003]),
 ];
 
 const RATE_HZ: f64 = 260.0;
 
-/// The panels of an effect; `None` where no strength is stated for it.
-pub(crate) fn panels(effect: &Description) -> Result<Option<[Panel; 2]>, Error> {
-    let Some((_, values)) = STRENGTHS.iter().find(|(id, _)| *id == effect.id) else { return Ok(None) };
+/// The panels of an effect.
+pub(crate) fn panels(effect: &Description) -> Result<[Panel; 2], Error> {
+    let values =
+        STRENGTHS.iter().find(|(id, _)| *id == effect.id).map_or(effect.example, |(_, values)| values);
     let parameters: Vec<(&str, f64)> =
         effect.parameters.iter().map(|own| own.name).zip(values.iter().copied()).collect();
     let nominal = Nominal::swinging(3.5, 0.006)?;
@@ -64,7 +49,7 @@ pub(crate) fn panels(effect: &Description) -> Result<Option<[Panel; 2]>, Error> 
     };
     let without = plain.run()?;
     let with = plain.with_effect(effect.id, &parameters)?.run()?;
-    Ok(Some(match (effect.kind, effect.driven_only) {
+    Ok(match (effect.kind, effect.driven_only) {
         (Kind::System, false) => swings(&without, &with),
         (Kind::System, true) => [motion(&without, &with, 2.0, false), difference(&without, &with, 2.0)],
         (Kind::MeasuringChain, _) => {
@@ -75,7 +60,7 @@ pub(crate) fn panels(effect: &Description) -> Result<Option<[Panel; 2]>, Error> 
             };
             [motion(&without, &with, 1.2, true), second]
         }
-    }))
+    })
 }
 
 /// Amplitude over time, and frequency over amplitude, from the turning points.

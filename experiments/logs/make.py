@@ -670,6 +670,26 @@ def headers_scope_block(rng):
     return ".csv", encode(rng, top + rows([[f"{v:.8f}" for v in t], [f"{v:.6f}" for v in x]], ",")), given(swing)
 
 
+def headers_lecroy(rng):
+    """Facts with more cells than the samples, above the names."""
+    swing, _ = plain(rng, ("V",))
+    t, x = even(swing)
+    lines = ["LECROYWS434,54321,Waveform", f"Segments,1,SegmentSize,{len(t)}", "Segment,TrigTime,TimeSinceSegment1",
+             "#1,12-Oct-2026 10:11:12,0", "Time,Ampl"]
+    return ".csv", encode(rng, lines + rows([exponents(t - t[len(t) // 20], places=9), fixed(x, swing.noise)], ",")), given(swing)
+
+
+def headers_counted(rng):
+    """Numbers of the samples in place of their times; a few samples are missing."""
+    swing, unit = plain(rng)
+    t, x = even(swing)
+    kept = rng.random(len(t)) > rng.uniform(0.005, 0.03)
+    kept[0] = True
+    name = pick(rng, ["frame", "sample", "Index", "n", "Frame no."])
+    cells = [[str(n) for n in numpy.flatnonzero(kept) + int(rng.integers(200))], fixed(x[kept], swing.noise)]
+    return ".csv", encode(rng, [f"{name},{name_of(unit)} ({unit})", *rows(cells, ",")]), given(swing, options=["--sample-rate", f"{swing.rate:g}"])
+
+
 def headers_daq(rng):
     """Title, date, names, units."""
     swing, unit = plain(rng)
@@ -839,8 +859,8 @@ def headers_phyphox_folder(rng):
 
 # 7. Several modes.
 
-def modal(rng, far):
-    """Two modes: the record is their sum. The first is the larger one."""
+def modal(rng, far, third=False):
+    """Two or three modes: the record is their sum. The first is the largest one."""
     swing = Swing(rng, f=(0.2, 15), z=(0.001, 0.02), per=(25, 200), cycles=(25, 60), snr=(50, 1000), size=(0.03, 1.0))
     if far:
         ratio = pick(rng, [spread(rng, 1.6, 5), 1 / spread(rng, 1.6, 3)])
@@ -850,16 +870,18 @@ def modal(rng, far):
         ratio = 1 + rng.uniform(max(0.03, 2 / swing.cycles), 0.15)
         second_size, z = rng.uniform(0.5, 1.0), swing.z * rng.uniform(0.6, 1.6)
     f = swing.f * ratio
-    swing.rate = float(f"{max(swing.rate, 14 * f):.3g}")
+    modes = [(swing.f, swing.z, swing.size), (f, z, second_size * swing.size)]
+    if third:
+        modes.append((max(f, swing.f) * rng.uniform(1.5, 2.5), spread(rng, 0.001, 0.02), rng.uniform(0.15, 0.5) * swing.size))
+    swing.rate = float(f"{max(swing.rate, 14 * max(g for g, _, _ in modes)):.3g}")
     t = swing.times(uneven=False)
     start = pick(rng, [(1, 0), (0, 1)])
-    parts = [free(t, g, d, size * start[0], size * start[1] * 2 * math.pi * g)[0]
-             for g, d, size in ((swing.f, swing.z, swing.size), (f, z, second_size * swing.size))]
-    columns, titles = [parts[0] + parts[1] + swing.hiss(len(t))], ["angle_rad"]
+    parts = [free(t, g, d, size * start[0], size * start[1] * 2 * math.pi * g)[0] for g, d, size in modes]
+    columns, titles = [sum(parts) + swing.hiss(len(t))], ["angle_rad"]
     if not far and rng.random() < 0.5:
         columns.append(parts[0] - parts[1] + swing.hiss(len(t)))
         titles = ["angle 1 (rad)", "angle 2 (rad)"]
-    modes = [{"frequency_hz": swing.f, "damping_ratio": swing.z}, {"frequency_hz": f, "damping_ratio": z}]
+    modes = [{"frequency_hz": g, "damping_ratio": d} for g, d, _ in modes]
     return ".csv", table(rng, swing, ["time_s"] + titles, [t] + columns, [swing.noise] * len(columns)), given(swing, modes=modes, accept="number or message" if len(columns) == 2 else "number")
 
 
@@ -869,6 +891,10 @@ def modes_beating(rng):
 
 def modes_apart(rng):
     return modal(rng, True)
+
+
+def modes_three(rng):
+    return modal(rng, True, True)
 
 
 # 8. Dampings and thin data.

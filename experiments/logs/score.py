@@ -186,6 +186,8 @@ def main():
     parser.add_argument("--kind", help="one kind, or kind/variant")
     parser.add_argument("--next", action="store_true", help="also runs the commands that the answer proposes")
     parser.add_argument("--full", action="store_true", help="prints whole lines")
+    parser.add_argument("--gate", action="store_true", help="exit code 1 where a log is wrong in silence, has no message of its own, or fewer than "
+                        "95 %% are within three standard errors")
     chosen = parser.parse_args()
     chosen.trainer = chosen.trainer.resolve()
     paths = []
@@ -197,7 +199,10 @@ def main():
         results = list(pool.map(lambda path: score(chosen, path), paths))
     report(results, chosen.full, chosen.next)
     (chosen.out / "score.json").write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
+    within = [r["answer"]["within_se"] for r in results if r["answer"]]
+    failed = any(r["verdict"] in ("silent", "crash") for r in results) or sum(within) < 0.95 * len(within)
+    return 1 if chosen.gate and failed else 0
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[2.0],
 };
 
 /// Damping that grows away from the middle: −c·θ̇·sin²θ.
@@ -40,5 +41,17 @@ impl Law for SineDrag {
     fn torque<S: Scalar>(&[coefficient, ..]: &Values<S>, moment: &Moment<S>) -> S {
         let sine = moment.position.sin();
         -coefficient * moment.velocity * sine * sine
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::at;
+
+    #[test]
+    fn the_sign_is_that_of_the_equation() {
+        let found = SineDrag::torque(&[0.7, 0.0, 0.0, 0.0], &at(0.5, 0.8, 0));
+        assert!((found + 0.7 * 0.8 * 0.5_f64.sin().powi(2)).abs() < 1e-15, "{found}");
     }
 }

@@ -1,18 +1,11 @@
 //! Answer of a diagnosis, as plain data.
 
-use crate::residual::floor::NoiseFloor;
 use dynamics::{Active, Hold, Nominal};
 pub use results::VerdictStatus as Status;
+use results::{
+    ClassEvidenceRow, DetectabilityRow, GapMaps, GapSummary, LeftOverRow, SetRow, StageRow, WithInterval,
+};
 use serde::Serialize;
-
-/// Number with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Interval {
-    /// Estimate.
-    pub value: f64,
-    /// Lower and upper end of the 95 % interval.
-    pub interval_95: [f64; 2],
-}
 
 /// Verdict of a diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,7 +33,7 @@ pub struct ParameterEstimate {
     pub unit: String,
     /// Value and interval; the interval is widened for the residual's autocorrelation.
     #[serde(flatten)]
-    pub estimate: Interval,
+    pub estimate: WithInterval,
     /// `true` if the data determine the parameter.
     pub determined: bool,
 }
@@ -58,7 +51,7 @@ pub struct EffectProbability {
     pub parameters: Vec<ParameterEstimate>,
     /// Shapley share of the gap that the repaired simulator closes, for effects of the verdict. A torque
     /// without a name comes after them: its share is what it adds.
-    pub gap_share: Option<Interval>,
+    pub gap_share: Option<WithInterval>,
 }
 
 /// Effect within a class.
@@ -68,19 +61,6 @@ pub struct Kind {
     pub id: &'static str,
     /// Probability of this kind, given that the class is there; those of all kinds of a class add up to 1.
     pub share: f64,
-}
-
-/// Evidence for a class of effects, in nats.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct ClassEvidence {
-    /// Log evidence of the best set of effects with the class, minus that of the best set without it. It
-    /// comes from held-out predictions or, if probably nothing is left beside the best set, from the
-    /// residuals of the fitted samples.
-    pub replacement: f64,
-    /// Log evidence from the amplitudes of half swings: that of the best combination of laws of loss with dry
-    /// friction (class `friction`) or quadratic drag (class `damping`), minus that of the best one without
-    /// it. `None` for other classes, for fewer than eight half swings, and if no record swings freely.
-    pub half_swings: Option<f64>,
 }
 
 /// Class of effects that explain alike, with the probability that the system has any of them.
@@ -94,7 +74,7 @@ pub struct EffectClass {
     /// other; `None` if there is no such class.
     pub either: Option<f64>,
     /// Shapley share of the gap that the repaired simulator closes, for classes of the verdict.
-    pub gap_share: Option<Interval>,
+    pub gap_share: Option<WithInterval>,
     /// Fitted kinds of the class, the most probable first.
     pub kinds: Vec<Kind>,
     /// `true` if these data identify the kind.
@@ -107,99 +87,7 @@ pub struct EffectClass {
     /// Share of the draws of segments, with replacement, in which the best set has the class.
     pub stability: f64,
     /// Evidence that the probability follows from.
-    pub evidence: ClassEvidence,
-}
-
-/// Left-over beside the named effects.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct LeftOver {
-    /// Share of the gap, beyond the noise, that has no name: 1 minus the closure.
-    pub share_of_gap: f64,
-    /// Held-out error over the noise (× noise).
-    pub over_noise: f64,
-}
-
-/// Size of the gap before and after the repair: root mean square errors on held-out parts, in the observed
-/// quantity's unit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Gap {
-    /// Unit of the errors.
-    pub unit: &'static str,
-    /// Error of the nominal simulator; only start states are fitted.
-    pub nominal: f64,
-    /// Error of the recalibrated simulator.
-    pub recalibrated: f64,
-    /// Error with the named effects, and with the torque without a name along the position, if one acts
-    /// beside them.
-    pub repaired: f64,
-    /// Error with a free latent torque added, if it predicts better than none; otherwise the same as
-    /// `repaired`.
-    pub ceiling: f64,
-    /// Noise floor.
-    pub noise_floor: NoiseFloor,
-    /// Closure 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired error R, the nominal error R₀ and the noise s₀;
-    /// values below −1 (worse by the gap itself) are stated as −1.
-    pub closure: Interval,
-    /// Closure relative to the recalibrated simulator, whose error takes the place of R₀: the share closed by
-    /// the effects.
-    pub closure_of_recalibrated: Interval,
-    /// Repaired error over the noise floor (× noise).
-    pub ratio_to_floor: Interval,
-    /// Errors of the recalibrated and the repaired simulator on the last third of the segments, fitted to the
-    /// first two thirds.
-    pub last_third: [f64; 2],
-    /// Description of how the held-out parts were chosen.
-    pub held_out: String,
-}
-
-/// Shares of the gap beyond recalibration by class of cause. They add up to 1, or are all 0 if there is no
-/// such gap.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Budget {
-    /// Share of causes that take energy out.
-    pub dissipative: f64,
-    /// Share of causes that depend on position.
-    pub conservative: f64,
-    /// Share of causes that depend on time.
-    pub time_dependent: f64,
-    /// Share of causes that distort the values.
-    pub sensor: f64,
-    /// Share of causes that distort the times.
-    pub clock: f64,
-}
-
-/// Cell of a map.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Cell {
-    /// Lower and upper bound along each axis of the map.
-    pub bounds: Vec<[f64; 2]>,
-    /// Root mean square of the recalibrated simulator's held-out residual in the cell, in the observed
-    /// quantity's unit.
-    pub value: f64,
-    /// The same for the repaired simulator.
-    pub repaired: f64,
-    /// Level that noise alone exceeds in at least one cell of the map with 5 % probability.
-    pub band: f64,
-    /// `true` if `value` lies above `band`.
-    pub significant: bool,
-    /// Number of samples in the cell.
-    pub samples: usize,
-}
-
-/// Place of the gap: budget and maps.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Where {
-    /// Shares by class of cause.
-    pub budget: Budget,
-    /// Map over time in seconds; one axis.
-    pub time: Vec<Cell>,
-    /// Map over the amplitude of the swing in rad or m; one axis.
-    pub amplitude: Vec<Cell>,
-    /// Map over position and velocity; two axes.
-    pub phase: Vec<Cell>,
-    /// Map over angular frequency in rad/s; one axis. Values are root mean squares within the band of
-    /// frequencies.
-    pub frequency: Vec<Cell>,
+    pub evidence: ClassEvidenceRow,
 }
 
 /// Finding that time stamps or values show directly.
@@ -234,9 +122,9 @@ pub struct Calibrated {
     /// Value in the nominal simulator.
     pub nominal: f64,
     /// Value recalibrated without effects; `None` if these data cannot determine it, so that it is held.
-    pub recalibrated: Option<Interval>,
+    pub recalibrated: Option<WithInterval>,
     /// Value fitted with the named effects; `None` if it is held.
-    pub repaired: Option<Interval>,
+    pub repaired: Option<WithInterval>,
     /// `true` if the data determine the value with the named effects; `None` if it is held.
     pub determined: Option<bool>,
 }
@@ -309,15 +197,6 @@ pub struct Rivalry {
     pub distance: f64,
 }
 
-/// Detectability of an effect of the verdict on these data.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Detectability {
-    /// Id of the effect.
-    pub effect: &'static str,
-    /// Cost of leaving the effect out, in units of the noise: the root of twice the log likelihood ratio.
-    pub d: f64,
-}
-
 /// Experiment that would distinguish the closest rivals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Experiment {
@@ -329,19 +208,6 @@ pub struct Experiment {
     pub distance: f64,
     /// Every experiment considered, with its predicted distance.
     pub considered: Vec<(String, f64)>,
-}
-
-/// Set of effects that was fitted.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SetScore {
-    /// Ids of its effects.
-    pub effects: Vec<&'static str>,
-    /// Probability among the sets.
-    pub probability: f64,
-    /// Root mean square residual of the fitted samples.
-    pub rms: f64,
-    /// Log evidence relative to the recalibrated simulator, in nats.
-    pub evidence: f64,
 }
 
 /// Series for plots, on the samples used.
@@ -369,15 +235,6 @@ pub struct Series {
     pub segment_records: Vec<usize>,
 }
 
-/// Time spent in a stage.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Stage {
-    /// Name of the stage.
-    pub name: &'static str,
-    /// Seconds by the stopwatch that was passed in.
-    pub seconds: f64,
-}
-
 /// Diagnosis of the gap between a nominal simulator and records.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnosis {
@@ -389,12 +246,12 @@ pub struct Diagnosis {
     /// Classes of effects, the most probable first.
     pub classes: Vec<EffectClass>,
     /// Left-over beside the named effects.
-    pub left_over: LeftOver,
+    pub left_over: LeftOverRow,
     /// Size of the gap before and after the repair.
-    pub gap: Gap,
+    pub gap: GapSummary,
     /// Place of the gap.
     #[serde(rename = "where")]
-    pub place: Where,
+    pub place: GapMaps,
     /// Measurement chain of the records.
     pub measuring_chain: MeasuringChain,
     /// Nominal coefficients before and after the fits.
@@ -406,11 +263,11 @@ pub struct Diagnosis {
     /// Rivals on these data, closest first.
     pub rivals: Vec<Rivalry>,
     /// Detectability of the verdict's effects.
-    pub detectability: Vec<Detectability>,
+    pub detectability: Vec<DetectabilityRow>,
     /// Experiment that would distinguish the closest rivals, if there are any.
     pub next_experiment: Option<Experiment>,
     /// Fitted sets, best first.
-    pub sets: Vec<SetScore>,
+    pub sets: Vec<SetRow>,
     /// Sets rejected because a strength ended at zero, so that the data do not support it with the right
     /// sign, or because a shape reduced an effect to another one.
     pub rejected: Vec<Vec<&'static str>>,
@@ -419,5 +276,5 @@ pub struct Diagnosis {
     /// Share of the samples that was used; below 1 for very long records.
     pub samples_used: f64,
     /// Time by stage.
-    pub stages: Vec<Stage>,
+    pub stages: Vec<StageRow>,
 }

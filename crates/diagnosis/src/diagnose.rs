@@ -7,7 +7,7 @@ use crate::fit::fitted::Fit;
 use crate::measurement::clock_rates::ClockRates;
 use crate::settings::Settings;
 use crate::stages::{
-    Judged, Known, Measured, Question, Refined, Remaining, Request, Searched, Stopwatch, answer,
+    Judged, Known, Measured, Question, Refined, Remaining, Request, Searched, Stage, Stopwatch, answer,
 };
 use dynamics::{Hold, NominalSimulator};
 use std::cell::OnceCell;
@@ -32,10 +32,10 @@ impl Sought {
         known: Option<Known>,
         watch: &mut Stopwatch<'_>,
     ) -> Result<Self, DiagnosisError> {
-        let measured = watch.after("measurement chain", Measured::of(request)?)?;
-        let question = watch.after("calibration", Question::of(request, &measured, hold)?)?;
+        let measured = watch.after(Stage::MeasurementChain, Measured::of(request)?)?;
+        let question = watch.after(Stage::Calibration, Question::of(request, &measured, hold)?)?;
         let searched = Searched::of(request, &question, measured.is_whole, known);
-        let sought = Self { measured, question, searched: watch.after("search", searched)? };
+        let sought = Self { measured, question, searched: watch.after(Stage::Search, searched)? };
         sought.with_enough_input(request, watch)
     }
 
@@ -51,7 +51,7 @@ impl Sought {
             let (Some(set), by) = (self.searched.best(), self.searched.interval.by) else { break };
             let Some(question) = self.question.finer(request, by, set)? else { break };
             let searched = Searched::of(request, &question, self.measured.is_whole, None);
-            self = Self { question, searched: watch.after("search", searched)?, ..self };
+            self = Self { question, searched: watch.after(Stage::Search, searched)?, ..self };
         }
         Ok(self)
     }
@@ -68,7 +68,7 @@ impl Sought {
             let other = Question::of(request, &self.measured, Some(hold))?;
             let Some(known) = self.searched.better_on(&self.question, &other) else { continue };
             let searched = Searched::of(request, &other, self.measured.is_whole, Some(known));
-            let sought = Self { question: other, searched: watch.after("search", searched)?, ..self };
+            let sought = Self { question: other, searched: watch.after(Stage::Search, searched)?, ..self };
             self = sought.with_enough_input(request, watch)?;
         }
         Ok(self)
@@ -107,8 +107,8 @@ pub fn diagnose(
     diagnose_watched(records, simulator, settings, seconds, &|_| true)
 }
 
-/// Diagnoses as [`diagnose`] does, with a callback. `goes_on` is called with the stage's name after each
-/// stage but the last; if it returns `false`, the diagnosis ends.
+/// Diagnoses as [`diagnose`] does, with a callback. `goes_on` is called after each stage but the
+/// last; if it returns `false`, the diagnosis ends.
 ///
 /// # Errors
 /// The errors of [`diagnose`], and [`DiagnosisError::Interrupted`].
@@ -117,7 +117,7 @@ pub fn diagnose_watched(
     simulator: impl Into<NominalSimulator>,
     settings: &Settings,
     seconds: &dyn Fn() -> f64,
-    goes_on: &dyn Fn(&'static str) -> bool,
+    goes_on: &dyn Fn(Stage) -> bool,
 ) -> Result<Diagnosis, DiagnosisError> {
     let simulator = &simulator.into();
     let mut watch = Stopwatch::new(seconds, goes_on);
@@ -138,15 +138,15 @@ pub fn diagnose_watched(
     let Sought { mut measured, question, searched } = sought;
     measured.findings.extend(clocks.finding());
     let request = Request { records: &clocks.records, simulator, settings };
-    let refined = watch.after("fits", Refined::of(question, searched)?)?;
+    let refined = watch.after(Stage::Fits, Refined::of(question, searched)?)?;
     let work = refined.context(&request);
     let completed = OnceCell::new();
     let judged = Judged::of(&request, &measured, &refined, &work, &completed)?;
-    let judged = watch.after("held-out parts", judged)?;
+    let judged = watch.after(Stage::HeldOutParts, judged)?;
     let unit = records.first().map_or("", |record| record.unit);
-    let remaining = watch.after("left-over", Remaining::of(&work, &refined, &judged, unit)?)?;
+    let remaining = watch.after(Stage::LeftOver, Remaining::of(&work, &refined, &judged, unit)?)?;
     let mut answer = answer(request, &measured, &refined, &work, &judged, &remaining)?;
-    answer.stages = watch.last("explanation");
+    answer.stages = watch.last(Stage::Explanation);
     Ok(answer)
 }
 
@@ -182,7 +182,7 @@ mod tests {
         };
         let records: Vec<Observations> = forces.iter().map(record).collect();
         let answer = diagnose(&records, &nominal, &Settings::default(), &|| 0.0).unwrap();
-        (answer.verdict.effects, answer.gap.repaired / answer.gap.noise_floor.value)
+        (answer.verdict.effects, answer.gap.repaired / answer.gap.noise_floor)
     }
 
     /// Without the cubic term, the recalibrated simulator comes closer if the input is held between its

@@ -65,9 +65,9 @@ mod stages;
 mod trials;
 
 pub use answer::{
-    Budget, Calibrated, Cell, ClassEvidence, Detectability, Diagnosis, EffectClass, EffectProbability,
-    Experiment, Finding, Gap, Interval, Kind, KnownRow, LeftOver, MeasuringChain, ParameterEstimate,
-    RepairedSimulator, Rivalry, Series, SetScore, Stage, StartState, Status, Undetermined, Verdict, Where,
+    Calibrated, Diagnosis, EffectClass, EffectProbability, Experiment, Finding, Kind, KnownRow,
+    MeasuringChain, ParameterEstimate, RepairedSimulator, Rivalry, Series, StartState, Status, Undetermined,
+    Verdict,
 };
 pub use data::observations::Observations;
 pub use diagnose::{diagnose, diagnose_watched};
@@ -76,6 +76,5 @@ pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};
 pub use explain::repaired::rounded;
 pub use explain::single_effect::single_effect;
 pub use model::vocabulary::{evidence_class, is_flexible};
-pub use residual::floor::NoiseFloor;
-pub use sets::weights::DISTINCT_DISTANCE;
 pub use settings::Settings;
+pub use stages::Stage;

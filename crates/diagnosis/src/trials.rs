@@ -200,7 +200,7 @@ fn bank(only: Option<&str>) -> Vec<Outcome> {
                 answer.verdict.status,
                 effects,
                 answer.verdict.confidence,
-                answer.gap.ratio_to_floor.value,
+                answer.gap.ratio_to_floor,
                 answer.gap.recalibrated,
                 answer.verdict.equivalent
             );

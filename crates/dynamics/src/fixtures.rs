@@ -1,6 +1,7 @@
 //! Fixtures shared by the tests of both integrators.
 
-use crate::{Active, Hold, Input, Nominal, System};
+use crate::scalar::Scalar;
+use crate::{Active, Coefficients, Effect, Hold, Input, Moment, Nominal, REGISTRY, System};
 
 /// Evenly spaced times from 0 to `duration` seconds, `rate` per second.
 pub(crate) fn grid(duration: f64, rate: f64) -> Vec<f64> {
@@ -18,35 +19,15 @@ pub(crate) fn with(nominal: Nominal, effects: &[(&str, &[f64])]) -> System {
         .unwrap()
 }
 
-/// One strength for each effect, large enough to matter over 25 s at 3.5 Hz from 0.7 rad.
-pub(crate) const CASES: &[(&str, &[f64])] = &[
-    ("coulomb_friction", &[1.0]),
-    ("stribeck_friction", &[0.5, 1.0, 2.0]),
-    ("quadratic_drag", &[0.05]),
-    ("cubic_stiffness", &[120.0]),
-    ("asymmetric_stiffness", &[60.0]),
-    ("gravity", &[150.0, 0.4]),
-    ("constant_torque", &[9.0]),
-    ("backlash", &[0.01]),
-    ("hysteresis", &[1.0, 0.01]),
-    ("end_stop", &[-0.5, 20_000.0, 0.05]),
-    ("stiffness_drift", &[0.002]),
-    ("damping_drift", &[0.02]),
-    ("periodic_forcing", &[4.0, 31.0, 0.3]),
-    ("flexible_coupling", &[0.05, 180.0, 0.2]),
-    ("input_delay", &[0.0031]),
-    ("input_saturation", &[8.0]),
-    ("command_derivative", &[0.02]),
-    ("torque_limit", &[180.0]),
-    ("load_friction", &[0.3, 0.004]),
-    ("directional_friction", &[1.0, 0.8]),
-    ("friction_drift", &[1.0, -0.05]),
-    ("drive_dead_band", &[0.01]),
-    ("speed_torque_limit", &[250.0, 30.0]),
-];
+/// Returns every effect of the system, each with the values of its example: the effect is then plain to see over 25 s at
+/// 3.5 Hz from 0.7 rad.
+pub(crate) fn cases() -> Vec<(&'static str, &'static [f64])> {
+    let in_system = REGISTRY.iter().filter(|effect| matches!(effect, Effect::System(_)));
+    in_system.map(|effect| (effect.id(), effect.description().example)).collect()
+}
 
-/// Every effect at once, each weaker, so that none hides the others.
-pub(crate) const EVERYTHING: &[(&str, &[f64])] = &[
+/// Values at which an effect hides none of the others, where its example would.
+const WEAKER: &[(&str, &[f64])] = &[
     ("coulomb_friction", &[0.1]),
     ("stribeck_friction", &[0.05, 0.2, 0.5]),
     ("quadratic_drag", &[0.002]),
@@ -57,12 +38,6 @@ pub(crate) const EVERYTHING: &[(&str, &[f64])] = &[
     ("backlash", &[0.004]),
     ("hysteresis", &[0.3, 0.01]),
     ("end_stop", &[-0.55, 20_000.0, 0.05]),
-    ("stiffness_drift", &[0.002]),
-    ("damping_drift", &[0.02]),
-    ("periodic_forcing", &[4.0, 31.0, 0.3]),
-    ("flexible_coupling", &[0.05, 180.0, 0.2]),
-    ("input_delay", &[0.0031]),
-    ("input_saturation", &[8.0]),
     ("command_derivative", &[0.002]),
     ("torque_limit", &[190.0]),
     ("load_friction", &[0.05, 0.001]),
@@ -71,6 +46,12 @@ pub(crate) const EVERYTHING: &[(&str, &[f64])] = &[
     ("drive_dead_band", &[0.004]),
     ("speed_torque_limit", &[260.0, 40.0]),
 ];
+
+/// Returns every effect of the system at once, so weak that none hides the others.
+pub(crate) fn everything() -> Vec<(&'static str, &'static [f64])> {
+    let weaker = |id: &str| WEAKER.iter().find(|(other, _)| *other == id);
+    cases().into_iter().map(|case| *weaker(case.0).unwrap_or(&case)).collect()
+}
 
 /// A command with a torque of up to 12 and a rising frequency, 50 samples a second.
 pub(crate) fn command(duration: f64, hold: Hold) -> Input {
@@ -82,4 +63,40 @@ pub(crate) fn command(duration: f64, hold: Hold) -> Input {
 pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// A moment with one of its twelve variables shifted.
+pub(crate) fn moment<S: Scalar>(
+    position: f64,
+    velocity: f64,
+    region: i8,
+    shift: S,
+    which: usize,
+) -> Moment<S> {
+    let number = |index: usize, value: f64| {
+        let value = S::from(value);
+        if index == which { value + shift } else { value }
+    };
+    Moment {
+        time: number(0, 2.3),
+        position: number(1, position),
+        velocity: number(2, velocity),
+        input: number(3, 1.7),
+        input_rate: number(11, 0.8),
+        hidden: [number(4, 0.3), number(5, -0.8)],
+        nominal: Coefficients {
+            inertia: number(6, 1.4),
+            damping: number(7, 0.6),
+            stiffness: number(8, 5.0),
+            rest_angle: number(9, 0.1),
+            input_gain: number(10, 1.0),
+        },
+        direction: if velocity < 0.0 { -1.0 } else { 1.0 },
+        region,
+    }
+}
+
+/// A moment of a system in motion.
+pub(crate) fn at(position: f64, velocity: f64, region: i8) -> Moment<f64> {
+    moment(position, velocity, region, 0.0, usize::MAX)
 }

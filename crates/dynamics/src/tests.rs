@@ -1,28 +1,17 @@
 //! Tests of the registry, and of every law against its description.
 
-use crate::fixtures::{CASES, EVERYTHING};
+use crate::fixtures::{at, moment};
 use crate::scalar::{Complex, Dual, Scalar};
 use crate::{
-    Active, Class, Coefficients, Kind, MOST_HIDDEN, Moment, Nominal, REGISTRY, Start, System, SystemEffect,
-    Values,
+    Active, Class, MOST_HIDDEN, Moment, Nominal, REGISTRY, Start, System, SystemEffect, UNNAMED, Values,
 };
 use std::collections::BTreeSet;
 
-/// The other tests run over [`CASES`] and [`EVERYTHING`]: an effect that has no strength there is not tested.
-#[test]
-fn every_effect_of_the_system_has_a_strength_in_the_tests() {
-    let of_kind = REGISTRY.iter().filter(|effect| effect.description().kind == Kind::System);
-    let ids: Vec<&str> = of_kind.map(|effect| effect.id()).collect();
-    for strengths in [CASES, EVERYTHING] {
-        assert_eq!(strengths.iter().map(|(id, _)| *id).collect::<Vec<_>>(), ids);
-    }
-    let unique: BTreeSet<&str> = REGISTRY.iter().map(|effect| effect.id()).collect();
-    assert_eq!(unique.len(), REGISTRY.len());
-}
-
 #[test]
 fn descriptions_are_complete() {
-    for effect in REGISTRY {
+    let unique: BTreeSet<&str> = REGISTRY.iter().map(|effect| effect.id()).collect();
+    assert_eq!(unique.len(), REGISTRY.len());
+    for effect in REGISTRY.iter().chain(UNNAMED) {
         let description = effect.description();
         let id = description.id;
         for text in [
@@ -45,6 +34,8 @@ fn descriptions_are_complete() {
             assert_ne!(*other, id);
         }
         assert!(description.hidden_states <= MOST_HIDDEN, "{id}");
+        // Active::new refuses values that are too few, too many or out of range.
+        Active::new(id, description.example).unwrap();
     }
     let hidden: usize = SystemEffect::ALL.iter().map(|effect| effect.description().hidden_states).sum();
     assert!(hidden <= crate::SYSTEM_HIDDEN);
@@ -57,33 +48,6 @@ fn values(effect: SystemEffect) -> Values<f64> {
         _ => [0.7, 0.9, 1.3, 0.0],
     }
 }
-
-/// A moment with one of its twelve variables shifted.
-fn moment<S: Scalar>(position: f64, velocity: f64, region: i8, shift: S, which: usize) -> Moment<S> {
-    let number = |index: usize, value: f64| {
-        let value = S::from(value);
-        if index == which { value + shift } else { value }
-    };
-    Moment {
-        time: number(0, 2.3),
-        position: number(1, position),
-        velocity: number(2, velocity),
-        input: number(3, 1.7),
-        input_rate: number(11, 0.8),
-        hidden: [number(4, 0.3), number(5, -0.8)],
-        nominal: Coefficients {
-            inertia: number(6, 1.4),
-            damping: number(7, 0.6),
-            stiffness: number(8, 5.0),
-            rest_angle: number(9, 0.1),
-            input_gain: number(10, 1.0),
-        },
-        direction: if velocity < 0.0 { -1.0 } else { 1.0 },
-        region,
-    }
-}
-
-const NONE: usize = usize::MAX;
 
 #[test]
 fn duals_agree_with_the_complex_step_in_every_law() {
@@ -123,7 +87,7 @@ fn dissipative_laws_take_energy_out_whatever_the_state() {
     for effect in SystemEffect::ALL.iter().filter(dissipative) {
         let own = values(*effect);
         for velocity in [-3.0, -0.2, 0.2, 3.0] {
-            let mut at = moment(0.5, velocity, 0, 0.0, NONE);
+            let mut at = at(0.5, velocity, 0);
             // A contact that slides; energy that it stores while bending is returned.
             at.hidden = [velocity.signum(), 0.0];
             let power = effect.torque(&own, &at) * velocity;
@@ -132,6 +96,7 @@ fn dissipative_laws_take_energy_out_whatever_the_state() {
     }
 }
 
+/// Of laws in several files; an effect's own file is the place for further ones.
 #[test]
 fn the_signs_are_those_of_the_equations() {
     use SystemEffect::{
@@ -141,7 +106,7 @@ fn the_signs_are_those_of_the_equations() {
         QuadraticDrag, SpeedTorqueLimit, StiffnessDrift, StribeckFriction, TorqueLimit, UnlistedDamping,
         UnlistedStiffness,
     };
-    let at = moment(0.5, 0.8, 0, 0.0, NONE);
+    let at = at(0.5, 0.8, 0);
     // Depth beyond the stop at 0.3.
     let depth = 0.2;
     // Torque of a servo's drive: input, spring and damping.
@@ -188,9 +153,6 @@ fn the_signs_are_those_of_the_equations() {
         (SpeedTorqueLimit, 1, 0.7 * (1.0 - 0.8 / 0.9) - drive),
         (SpeedTorqueLimit, -1, -0.7 - drive),
     ];
-    for &effect in SystemEffect::ALL {
-        assert!(expected.iter().any(|(other, ..)| *other == effect));
-    }
     for (effect, region, expected) in expected {
         let found = effect.torque(&values(effect), &Moment { region, ..at });
         assert!((found - expected).abs() < 1e-14, "{effect:?} {region}: {found}, not {expected}");
@@ -208,7 +170,7 @@ fn a_region_has_positive_margins_in_its_inside() {
         let own = values(effect);
         for position in [-1.4, -0.3, 0.05, 0.25, 0.5, 1.5] {
             for velocity in [-8.0, -0.3, 0.4, 9.0] {
-                let mut at = moment(position, velocity, 0, 0.0, NONE);
+                let mut at = at(position, velocity, 0);
                 at.region = effect.region(&own, &at);
                 for (edge, margin) in effect.margins(&own, &at).into_iter().enumerate() {
                     let Some(margin) = margin else { continue };
@@ -227,7 +189,7 @@ fn the_contact_never_pulls() {
         let own = [stop, 50.0, 0.2, 0.0];
         for position in [-1.0, -0.21, 0.0, 0.31, 0.9] {
             for velocity in [-40.0, -4.0, 0.0, 4.0, 40.0] {
-                let mut at = moment(position, velocity, 0, 0.0, NONE);
+                let mut at = at(position, velocity, 0);
                 at.region = effect.region(&own, &at);
                 let push = -effect.torque(&own, &at) * (stop - 0.1_f64).signum();
                 assert!(push >= 0.0, "{stop} {position} {velocity}: {push}");

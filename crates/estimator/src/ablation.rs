@@ -1,4 +1,8 @@
 //! Ablations: an estimator's learned part is replaced to show what it contributes.
+//!
+//! The contribution of a learned part is measured: an estimator tagged [`Tag::Ablation`](crate::Tag::Ablation) is
+//! fitted again with that part at zero and with noise as its input, and the battery fails if that changes nothing,
+//! unless a waiver gives the reason.
 
 use rand::RngExt;
 use seed::Seed;

@@ -5,7 +5,7 @@
 //! no other estimator, and cannot reach the oracle or the truth: its crate does not depend on them, which a
 //! test checks.
 //!
-//! A new estimator is one crate with one [`Entry`]; copy `crates/estimators/baseline` as a start.
+//! A new estimator is one crate with one [`Entry`]; `trainer new estimator NAME` writes a start.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -6,14 +6,7 @@ use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError}
 /// Table of the inner loop.
 pub(crate) const TABLE: &str = "actuator";
 
-const PLAIN: Field = Field {
-    key: "",
-    kind: Kind::Float { min: 0.0, max: f64::MAX },
-    default: Default::Absent,
-    unit: "",
-    meaning: "",
-    source: "",
-};
+const NON_NEGATIVE: Kind = Kind::Float { min: 0.0, max: f64::MAX };
 const ABOVE_ZERO: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 
 /// Keys of `[actuator]`.
@@ -23,100 +16,47 @@ pub const ACTUATOR: Section<'static> = Section { name: TABLE, fields: FIELDS };
 pub const ACTUATOR_STATED: [&str; 3] = ["proportional", "derivative", "delay"];
 
 const FIELDS: &[Field] = &[
-    Field {
-        key: "kind",
-        kind: Kind::Choice(&["position", "velocity", "torque"]),
-        default: Default::Required,
-        meaning: "Quantity that is commanded.",
-        ..PLAIN
-    },
-    Field {
-        key: "proportional",
-        kind: ABOVE_ZERO,
-        unit: "N m/rad",
-        meaning: "Gain of the position error: a number, { value = …, tolerance = … }, or \"unknown\".",
-        ..PLAIN
-    },
-    Field {
-        key: "derivative",
-        unit: "N m s/rad",
-        meaning: "Gain of the velocity, stated like proportional.",
-        ..PLAIN
-    },
-    Field {
-        key: "derivative_on",
-        kind: Kind::Choice(&["measurement", "error"]),
-        default: Default::Text("measurement"),
-        meaning: "What the loop differentiates: the measured motion alone, or its error and so the command.",
-        ..PLAIN
-    },
-    Field {
-        key: "integral",
-        kind: Kind::Float { min: 0.0, max: 0.0 },
-        default: Default::Float(0.0),
-        unit: "N m/(rad s)",
-        meaning: "Gain of the integrated error; a loop with one cannot be simulated yet.",
-        ..PLAIN
-    },
-    Field {
-        key: "delay",
-        unit: "s",
-        meaning: "Time from a command to its action, stated like proportional; 0 by default.",
-        ..PLAIN
-    },
-    Field {
-        key: "hold",
-        kind: Kind::Choice(&["zero-order", "linear"]),
-        meaning: "Command between its samples; without it the records decide.",
-        ..PLAIN
-    },
-    Field {
-        key: "torque_limit",
-        kind: ABOVE_ZERO,
-        unit: "N m",
-        meaning: "Largest torque of the drive.",
-        ..PLAIN
-    },
-    Field {
-        key: "no_load_speed",
-        kind: ABOVE_ZERO,
-        unit: "rad/s",
-        meaning: "Speed at which the largest torque has fallen to 0.",
-        ..PLAIN
-    },
-    Field {
-        key: "dead_band",
-        kind: ABOVE_ZERO,
-        unit: "rad",
-        meaning: "Half the width of the position errors that cause no torque.",
-        ..PLAIN
-    },
-    Field {
-        key: "gear_ratio",
-        kind: ABOVE_ZERO,
-        default: Default::Float(1.0),
-        unit: "1",
-        meaning: "Turns of the rotor for one of the joint.",
-        ..PLAIN
-    },
-    Field {
-        key: "rotor_inertia",
-        default: Default::Float(0.0),
-        unit: "kg m^2",
-        meaning: "Inertia of the rotor about its own axis.",
-        ..PLAIN
-    },
+    Field::new("kind", Kind::Choice(&["position", "velocity", "torque"]), Default::Required)
+        .meaning("Quantity that is commanded."),
+    Field::new("proportional", ABOVE_ZERO, Default::Absent)
+        .unit("N m/rad")
+        .meaning("Gain of the position error: a number, { value = …, tolerance = … }, or \"unknown\"."),
+    Field::new("derivative", NON_NEGATIVE, Default::Absent)
+        .unit("N m s/rad")
+        .meaning("Gain of the velocity, stated like proportional."),
+    Field::new("derivative_on", Kind::Choice(&["measurement", "error"]), Default::Text("measurement"))
+        .meaning(
+            "What the loop differentiates: the measured motion alone, or its error and so the \
+                command.",
+        ),
+    Field::new("integral", Kind::Float { min: 0.0, max: 0.0 }, Default::Float(0.0))
+        .unit("N m/(rad s)")
+        .meaning("Gain of the integrated error; a loop with one cannot be simulated yet."),
+    Field::new("delay", NON_NEGATIVE, Default::Absent)
+        .unit("s")
+        .meaning("Time from a command to its action, stated like proportional; 0 by default."),
+    Field::new("hold", Kind::Choice(&["zero-order", "linear"]), Default::Absent)
+        .meaning("Command between its samples; without it the records decide."),
+    Field::new("torque_limit", ABOVE_ZERO, Default::Absent)
+        .unit("N m")
+        .meaning("Largest torque of the drive."),
+    Field::new("no_load_speed", ABOVE_ZERO, Default::Absent)
+        .unit("rad/s")
+        .meaning("Speed at which the largest torque has fallen to 0."),
+    Field::new("dead_band", ABOVE_ZERO, Default::Absent)
+        .unit("rad")
+        .meaning("Half the width of the position errors that cause no torque."),
+    Field::new("gear_ratio", ABOVE_ZERO, Default::Float(1.0))
+        .unit("1")
+        .meaning("Turns of the rotor for one of the joint."),
+    Field::new("rotor_inertia", NON_NEGATIVE, Default::Float(0.0))
+        .unit("kg m^2")
+        .meaning("Inertia of the rotor about its own axis."),
 ];
 
 const TOLERANT: &[Field] = &[
-    Field { key: "value", default: Default::Required, meaning: "Most probable value.", ..PLAIN },
-    Field {
-        key: "tolerance",
-        kind: ABOVE_ZERO,
-        default: Default::Required,
-        meaning: "Half the width of its 95 % interval.",
-        ..PLAIN
-    },
+    Field::new("value", NON_NEGATIVE, Default::Required).meaning("Most probable value."),
+    Field::new("tolerance", ABOVE_ZERO, Default::Required).meaning("Half the width of its 95 % interval."),
 ];
 
 const UNKNOWN: Kind = Kind::Choice(&["unknown"]);
@@ -154,7 +94,7 @@ pub(crate) fn sections(document: &Document) -> Vec<(String, Vec<Field>)> {
         .filter(|field| form(document, field.key) != Form::Tolerant || !ACTUATOR_STATED.contains(&field.key));
     let own = own.map(|field| {
         let is_word = ACTUATOR_STATED.contains(&field.key) && form(document, field.key) == Form::Word;
-        if is_word { Field { kind: UNKNOWN, ..*field } } else { *field }
+        if is_word { field.kind(UNKNOWN) } else { *field }
     });
     let tolerant = ACTUATOR_STATED.into_iter().filter(|key| form(document, key) == Form::Tolerant);
     let tolerant = tolerant.map(|key| (format!("{TABLE}.{key}"), TOLERANT.to_vec()));

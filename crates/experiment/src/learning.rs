@@ -3,7 +3,7 @@
 use crate::experiment::DataSettings;
 use crate::json_schema::{asking_for_task, put};
 use crate::prediction::all_known;
-use crate::schema::{DATA, PLAIN, TOP};
+use crate::schema::{DATA, TOP};
 use dynamics::Hold;
 use learn::Entry;
 use learn::baselines::BASELINES;
@@ -153,157 +153,79 @@ struct Top {
     seed: u64,
 }
 
-const TASK_FIELD: Field = Field {
-    key: "task",
-    kind: Kind::Choice(&[TASK]),
-    default: Default::Required,
-    meaning: "What to do: learn the dynamics from records, and judge on records never seen.",
-    ..PLAIN
-};
+const TASK_FIELD: Field = Field::new("task", Kind::Choice(&[TASK]), Default::Required)
+    .meaning("What to do: learn the dynamics from records, and judge on records never seen.");
 
 fn top() -> Vec<Field> {
     TOP.iter().map(|field| if field.key == "task" { TASK_FIELD } else { *field }).collect()
 }
 
 const LEARN: &[Field] = &[
-    Field {
-        key: "learners",
-        kind: Kind::Texts { at_least: 0, at_most: 100 },
-        meaning: "Which learners, by name; left open, all there are.",
-        ..PLAIN
-    },
-    Field {
-        key: "baselines",
-        kind: Kind::Texts { at_least: 0, at_most: 100 },
-        meaning: "Which baselines: persistence, nominal, recalibrated, arx, repaired (which runs a diagnosis, the slowest); \
-                  left open, all there are.",
-        ..PLAIN
-    },
-    Field {
-        key: "problems",
-        kind: Kind::Texts { at_least: 1, at_most: 1000 },
-        meaning: "Which data sets, by name; left open, every section problem.NAME.",
-        ..PLAIN
-    },
-    Field {
-        key: "max_steps",
-        kind: Kind::Integer { min: 0, max: i64::MAX },
-        meaning: "Cap on the steps of every fit, in addition to a learner's own; 0 leaves networks \
-                  untrained.",
-        ..PLAIN
-    },
-    Field {
-        key: "ablations",
-        kind: Kind::Boolean,
-        default: Default::Boolean(true),
-        meaning: "Whether each learner's model is judged twice more: with everything that it learned set to \
-                  zero, and with noise in place of past and input.",
-        ..PLAIN
-    },
+    Field::new("learners", Kind::Texts { at_least: 0, at_most: 100 }, Default::Absent)
+        .meaning("Which learners, by name; left open, all there are."),
+    Field::new("baselines", Kind::Texts { at_least: 0, at_most: 100 }, Default::Absent).meaning(
+        "Which baselines: persistence, nominal, recalibrated, arx, repaired (which runs a \
+                diagnosis, the slowest); left open, all there are.",
+    ),
+    Field::new("problems", Kind::Texts { at_least: 1, at_most: 1000 }, Default::Absent)
+        .meaning("Which data sets, by name; left open, every section problem.NAME."),
+    Field::new("max_steps", Kind::Integer { min: 0, max: i64::MAX }, Default::Absent).meaning(
+        "Cap on the steps of every fit, in addition to a learner's own; 0 leaves networks \
+                untrained.",
+    ),
+    Field::new("ablations", Kind::Boolean, Default::Boolean(true)).meaning(
+        "Whether each learner's model is judged twice more: with everything that it learned \
+                set to zero, and with noise in place of past and input.",
+    ),
 ];
 
 const PROBLEM: &[Field] = &[
-    Field { key: "title", meaning: "Title in tables and reports; left open, the section's name.", ..PLAIN },
-    Field {
-        key: "simulation",
-        kind: Kind::Path,
-        meaning: "A configuration of a simulation; the records are those of its first system, and the truth is known to the \
-                  judge.",
-        ..PLAIN
-    },
-    Field { key: "folder", kind: Kind::Path, meaning: "The folder of the record files.", ..PLAIN },
-    Field {
-        key: "records",
-        kind: Kind::Texts { at_least: 1, at_most: 10_000 },
-        meaning: "Names of record files in the folder, which may hold *; the last ones are tested on.",
-        ..PLAIN
-    },
-    Field {
-        key: "nominal",
-        kind: Kind::Path,
-        meaning: "The nominal simulator's file; left open, that of the simulation, or none.",
-        ..PLAIN
-    },
-    Field {
-        key: "every",
-        kind: Kind::Integer { min: 1, max: 1_000_000 },
-        default: Default::Integer(1),
-        meaning: "Uses one of every so many samples.",
-        ..PLAIN
-    },
-    Field {
-        key: "remove_mean",
-        kind: Kind::Boolean,
-        default: Default::Boolean(false),
-        meaning: "Subtracts the mean of the observed column and of the input: for channels with an arbitrary zero.",
-        ..PLAIN
-    },
-    Field {
-        key: "split",
-        kind: Kind::Choice(&["record", "time", "both"]),
-        default: Default::Text("record"),
-        meaning: "What is tested on: whole records, the end of every record, or the end of records not learned from.",
-        ..PLAIN
-    },
-    Field {
-        key: "test_records",
-        kind: Kind::Integer { min: 0, max: 100_000 },
-        default: Default::Integer(1),
-        meaning: "By record: number of records, the last ones, to test on.",
-        ..PLAIN
-    },
-    Field {
-        key: "validation_records",
-        kind: Kind::Integer { min: 0, max: 100_000 },
-        default: Default::Integer(0),
-        meaning: "By record: number of records before those that are used to choose among models; with 0, \
-                  the end of the training records is used.",
-        ..PLAIN
-    },
-    Field {
-        key: "test_share",
-        kind: Kind::Float { min: 0.01, max: 0.9 },
-        default: Default::Float(0.3),
-        meaning: "By time: share of a record at its end that is tested on.",
-        ..PLAIN
-    },
-    Field {
-        key: "validation_share",
-        kind: Kind::Float { min: 0.01, max: 0.9 },
-        default: Default::Float(0.2),
-        meaning: "Share at the end of a training part that is used to choose among models if no whole record \
-                  is.",
-        ..PLAIN
-    },
-    Field {
-        key: "hold",
-        kind: Kind::Choice(&["auto", "zero", "linear"]),
-        default: Default::Text("auto"),
-        meaning: "Input between samples: it keeps its value, or goes straight to the next; auto: whichever a \
-                  law of all terms follows better.",
-        ..PLAIN
-    },
-    Field {
-        key: "warm_up_s",
-        kind: Kind::Float { min: 1e-9, max: 1e9 },
-        unit: "s",
-        meaning: "Length of the past that a prediction starts from; left open, a period.",
-        ..PLAIN
-    },
-    Field {
-        key: "period_s",
-        kind: Kind::Float { min: 1e-9, max: 1e9 },
-        unit: "s",
-        meaning: "Typical period of the motion; left open, read from the training records.",
-        ..PLAIN
-    },
-    Field {
-        key: "noise",
-        kind: Kind::Float { min: 1e-300, max: 1e9 },
-        unit: "unit of the positions",
-        meaning: "Standard deviation of the sensor's noise; left open, read from the training records.",
-        ..PLAIN
-    },
+    Field::new("title", Kind::Text, Default::Absent)
+        .meaning("Title in tables and reports; left open, the section's name."),
+    Field::new("simulation", Kind::Path, Default::Absent).meaning(
+        "A configuration of a simulation; the records are those of its first system, and the \
+                truth is known to the judge.",
+    ),
+    Field::new("folder", Kind::Path, Default::Absent).meaning("The folder of the record files."),
+    Field::new("records", Kind::Texts { at_least: 1, at_most: 10_000 }, Default::Absent)
+        .meaning("Names of record files in the folder, which may hold *; the last ones are tested on."),
+    Field::new("nominal", Kind::Path, Default::Absent)
+        .meaning("The nominal simulator's file; left open, that of the simulation, or none."),
+    Field::new("every", Kind::Integer { min: 1, max: 1_000_000 }, Default::Integer(1))
+        .meaning("Uses one of every so many samples."),
+    Field::new("remove_mean", Kind::Boolean, Default::Boolean(false)).meaning(
+        "Subtracts the mean of the observed column and of the input: for channels with an \
+                arbitrary zero.",
+    ),
+    Field::new("split", Kind::Choice(&["record", "time", "both"]), Default::Text("record")).meaning(
+        "What is tested on: whole records, the end of every record, or the end of records not \
+                learned from.",
+    ),
+    Field::new("test_records", Kind::Integer { min: 0, max: 100_000 }, Default::Integer(1))
+        .meaning("By record: number of records, the last ones, to test on."),
+    Field::new("validation_records", Kind::Integer { min: 0, max: 100_000 }, Default::Integer(0)).meaning(
+        "By record: number of records before those that are used to choose among models; with \
+                0, the end of the training records is used.",
+    ),
+    Field::new("test_share", Kind::Float { min: 0.01, max: 0.9 }, Default::Float(0.3))
+        .meaning("By time: share of a record at its end that is tested on."),
+    Field::new("validation_share", Kind::Float { min: 0.01, max: 0.9 }, Default::Float(0.2)).meaning(
+        "Share at the end of a training part that is used to choose among models if no whole \
+                record is.",
+    ),
+    Field::new("hold", Kind::Choice(&["auto", "zero", "linear"]), Default::Text("auto")).meaning(
+        "Input between samples: it keeps its value, or goes straight to the next; auto: \
+                whichever a law of all terms follows better.",
+    ),
+    Field::new("warm_up_s", Kind::Float { min: 1e-9, max: 1e9 }, Default::Absent)
+        .unit("s")
+        .meaning("Length of the past that a prediction starts from; left open, a period."),
+    Field::new("period_s", Kind::Float { min: 1e-9, max: 1e9 }, Default::Absent)
+        .unit("s")
+        .meaning("Typical period of the motion; left open, read from the training records."),
+    Field::new("noise", Kind::Float { min: 1e-300, max: 1e9 }, Default::Absent)
+        .unit("unit of the positions")
+        .meaning("Standard deviation of the sensor's noise; left open, read from the training records."),
 ];
 
 /// Returns the keys of a problem: its own, and those for reading its files.

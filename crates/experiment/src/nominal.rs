@@ -83,14 +83,8 @@ struct EffectKeys {
     recalibrate: bool,
 }
 
-const NUMBER: Field = Field {
-    key: "",
-    kind: Kind::Float { min: f64::MIN, max: f64::MAX },
-    default: Default::Absent,
-    unit: "SI, or divided by the inertia",
-    meaning: "",
-    source: "",
-};
+const NUMBER: Field = Field::new("", Kind::Float { min: f64::MIN, max: f64::MAX }, Default::Absent)
+    .unit("SI, or divided by the inertia");
 const POSITIVE: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 const NON_NEGATIVE: Kind = Kind::Float { min: 0.0, max: f64::MAX };
 
@@ -109,117 +103,80 @@ pub const NOMINAL_DECAYS: [&str; 2] = ["damping", "damping_ratio"];
 const OF_RECORDS: [&str; 6] = ["simulate", "record", "start", "sensor", "input", "calibration"];
 
 const FIELDS: &[Field] = &[
-    Field {
-        key: "coordinate",
-        kind: Kind::Choice(&["angle", "displacement"]),
-        default: Default::Text("angle"),
-        unit: "",
-        meaning: "What moves: an angle in rad, or a displacement in m.",
-        ..NUMBER
-    },
-    Field {
-        key: "inertia",
-        kind: POSITIVE,
-        meaning: "Moment of inertia, or mass; 1 where everything is per unit of inertia, as it is by default beside a frequency or a period.",
-        ..NUMBER
-    },
-    Field {
-        key: "damping",
-        kind: NON_NEGATIVE,
-        meaning: "Viscous damping; damping_ratio is an alternative.",
-        ..NUMBER
-    },
-    Field {
-        key: "damping_ratio",
-        kind: NON_NEGATIVE,
-        unit: "1",
-        meaning: "Damping over the critical damping 2·√(stiffness·inertia), in place of damping.",
-        ..NUMBER
-    },
-    Field {
-        key: "stiffness",
-        kind: NON_NEGATIVE,
-        meaning: "Stiffness of the spring; 0 for a drive without one, or a pendulum that only its weight \
-                  holds. natural_frequency, natural_frequency_rad_s and period are alternatives.",
-        ..NUMBER
-    },
-    Field {
-        key: "natural_frequency",
-        kind: POSITIVE,
-        unit: "Hz",
-        meaning: "Frequency of the undamped oscillator without effects, in place of stiffness.",
-        ..NUMBER
-    },
-    Field {
-        key: "natural_frequency_rad_s",
-        kind: POSITIVE,
-        unit: "rad/s",
-        meaning: "The same as an angular frequency, in place of stiffness.",
-        ..NUMBER
-    },
-    Field {
-        key: "period",
-        kind: POSITIVE,
-        unit: "s",
-        meaning: "Period of the undamped oscillator without effects, in place of stiffness.",
-        ..NUMBER
-    },
-    Field {
-        key: "rest_angle",
-        unit: "rad or m",
-        default: Default::Float(0.0),
-        meaning: "Where the spring is relaxed.",
-        ..NUMBER
-    },
-    Field {
-        key: "input_gain",
-        default: Default::Float(1.0),
-        unit: "torque or force per unit of the input",
-        meaning: "Torque or force that a unit of the input exerts.",
-        ..NUMBER
-    },
-    Field {
-        key: "sensor_resolution",
-        kind: POSITIVE,
-        unit: "rad or m",
-        meaning: "The sensor's stated resolution.",
-        ..NUMBER
-    },
+    NUMBER
+        .key("coordinate")
+        .kind(Kind::Choice(&["angle", "displacement"]))
+        .default(Default::Text("angle"))
+        .meaning("What moves: an angle in rad, or a displacement in m."),
+    NUMBER.key("inertia").kind(POSITIVE).meaning(
+        "Moment of inertia, or mass; 1 where everything is per unit of inertia, as it is by \
+                default beside a frequency or a period.",
+    ),
+    NUMBER.key("damping").kind(NON_NEGATIVE).meaning("Viscous damping; damping_ratio is an alternative."),
+    NUMBER
+        .key("damping_ratio")
+        .kind(NON_NEGATIVE)
+        .unit("1")
+        .meaning("Damping over the critical damping 2·√(stiffness·inertia), in place of damping."),
+    NUMBER.key("stiffness").kind(NON_NEGATIVE).meaning(
+        "Stiffness of the spring; 0 for a drive without one, or a pendulum that only its \
+                weight holds. natural_frequency, natural_frequency_rad_s and period are \
+                alternatives.",
+    ),
+    NUMBER
+        .key("natural_frequency")
+        .kind(POSITIVE)
+        .unit("Hz")
+        .meaning("Frequency of the undamped oscillator without effects, in place of stiffness."),
+    NUMBER
+        .key("natural_frequency_rad_s")
+        .kind(POSITIVE)
+        .unit("rad/s")
+        .meaning("The same as an angular frequency, in place of stiffness."),
+    NUMBER
+        .key("period")
+        .kind(POSITIVE)
+        .unit("s")
+        .meaning("Period of the undamped oscillator without effects, in place of stiffness."),
+    NUMBER
+        .key("rest_angle")
+        .default(Default::Float(0.0))
+        .unit("rad or m")
+        .meaning("Where the spring is relaxed."),
+    NUMBER
+        .key("input_gain")
+        .default(Default::Float(1.0))
+        .unit("torque or force per unit of the input")
+        .meaning("Torque or force that a unit of the input exerts."),
+    NUMBER
+        .key("sensor_resolution")
+        .kind(POSITIVE)
+        .unit("rad or m")
+        .meaning("The sensor's stated resolution."),
 ];
 
 /// Keys at the top of a configuration of `trainer simulate`.
 const OF_SIMULATION: &[Field] = &[
-    Field { key: "task", kind: Kind::Choice(&["simulate"]), unit: "", ..NUMBER },
-    Field { key: "name", kind: Kind::Text, unit: "", ..NUMBER },
-    Field { key: "seed", kind: Kind::Integer { min: 0, max: i64::MAX }, unit: "", ..NUMBER },
+    NUMBER.key("task").kind(Kind::Choice(&["simulate"])),
+    NUMBER.key("name").kind(Kind::Text),
+    NUMBER.key("seed").kind(Kind::Integer { min: 0, max: i64::MAX }),
 ];
 
 const EFFECT: &[Field] = &[
-    Field {
-        key: "id",
-        kind: Kind::Text,
-        default: Default::Required,
-        unit: "",
-        meaning: "An effect that the simulator has, as `trainer list effects` names it.",
-        ..NUMBER
-    },
-    Field {
-        key: "recalibrate",
-        kind: Kind::Boolean,
-        default: Default::Boolean(true),
-        unit: "",
-        meaning: "Whether a recalibration may move its parameters; false holds them as stated.",
-        ..NUMBER
-    },
-    Field {
-        key: "probability",
-        kind: Kind::Float { min: 1.0, max: 1.0 },
-        default: Default::Float(1.0),
-        unit: "",
-        meaning: "Always 1: a nominal simulator has the effect. In a simulation, an effect occurs with this \
-                  probability.",
-        ..NUMBER
-    },
+    NUMBER
+        .key("id")
+        .kind(Kind::Text)
+        .default(Default::Required)
+        .meaning("An effect that the simulator has, as `trainer list effects` names it."),
+    NUMBER
+        .key("recalibrate")
+        .kind(Kind::Boolean)
+        .default(Default::Boolean(true))
+        .meaning("Whether a recalibration may move its parameters; false holds them as stated."),
+    NUMBER.key("probability").kind(Kind::Float { min: 1.0, max: 1.0 }).default(Default::Float(1.0)).meaning(
+        "Always 1: a nominal simulator has the effect. In a simulation, an effect occurs with \
+                this probability.",
+    ),
 ];
 
 /// Checks a document and builds the simulator that it states.

@@ -2,7 +2,7 @@
 
 use crate::experiment::{CheckpointSettings, DataSettings, Top};
 use crate::pipelines::{self, EnvelopeSettings, Pipeline};
-use crate::schema::{CHECKPOINT, DATA, PAPER, PLAIN, RECOMMENDED, SAMPLES, TOP};
+use crate::schema::{CHECKPOINT, DATA, PAPER, RECOMMENDED, SAMPLES, TOP};
 use estimator::Entry;
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
@@ -137,161 +137,82 @@ pub(crate) const PREDICT_SECTIONS: &[Section<'static>] = &[
 ];
 
 const PREDICT: &[Field] = &[
-    Field {
-        key: "methods",
-        kind: Kind::Texts { at_least: 1, at_most: 1000 },
-        meaning: "Which methods, classical and learned, by name; left open, all there are.",
-        ..PLAIN
-    },
-    Field {
-        key: "problems",
-        kind: Kind::Texts { at_least: 1, at_most: 1000 },
-        meaning: "Which problems, by name; left open, every section problem.NAME.",
-        ..PLAIN
-    },
-    Field {
-        key: "draws",
-        kind: Kind::Integer { min: 1, max: 100_000 },
-        default: Default::Integer(200),
-        meaning: "Draws of the scatter on a simulated problem, each with a fit of its own.",
-        source: "a share of 0.95 is then known to 0.03 (Clopper, Pearson 1934)",
-        ..PLAIN
-    },
-    Field {
-        key: "draws_seeded",
-        kind: Kind::Integer { min: 1, max: 100_000 },
-        default: Default::Integer(20),
-        meaning: "Draws for methods with random numbers of their own, which are slow: the first of all \
-                  draws.",
-        source: "what a minute on two cores allows",
-        ..PLAIN
-    },
-    Field {
-        key: "block_peaks",
-        kind: Kind::Integer { min: 1, max: 10_000 },
-        default: Default::Integer(3),
-        unit: "peaks",
-        meaning: "Interpolation: successive peaks held out together.",
-        source: "more than one, so that a neighbor's scatter is no help",
-    },
-    Field {
-        key: "every",
-        kind: Kind::Integer { min: 2, max: 1000 },
-        default: Default::Integer(4),
-        unit: "blocks",
-        meaning: "Interpolation: one of every so many blocks is held out, but never the first or the last.",
-        source: "fits keep three quarters of the peaks",
-    },
-    Field {
-        key: "last_share",
-        kind: Kind::Float { min: 0.05, max: 0.8 },
-        default: Default::Float(1.0 / 3.0),
-        meaning: "Extrapolation: share of the peaks at the end that is held out.",
-        ..PLAIN
-    },
-    Field {
-        key: "significance",
-        kind: Kind::Float { min: 1e-9, max: 0.5 },
-        default: Default::Float(0.05),
-        meaning: "Largest adjusted p-value that counts as more than chance.",
-        source: "convention",
-        ..PLAIN
-    },
-    Field {
-        key: "max_steps",
-        kind: Kind::Integer { min: 0, max: i64::MAX },
-        meaning: "Cap on the training steps, in addition to a method's own; 0 leaves it untrained.",
-        ..PLAIN
-    },
+    Field::new("methods", Kind::Texts { at_least: 1, at_most: 1000 }, Default::Absent)
+        .meaning("Which methods, classical and learned, by name; left open, all there are."),
+    Field::new("problems", Kind::Texts { at_least: 1, at_most: 1000 }, Default::Absent)
+        .meaning("Which problems, by name; left open, every section problem.NAME."),
+    Field::new("draws", Kind::Integer { min: 1, max: 100_000 }, Default::Integer(200))
+        .meaning("Draws of the scatter on a simulated problem, each with a fit of its own.")
+        .source("a share of 0.95 is then known to 0.03 (Clopper, Pearson 1934)"),
+    Field::new("draws_seeded", Kind::Integer { min: 1, max: 100_000 }, Default::Integer(20))
+        .meaning(
+            "Draws for methods with random numbers of their own, which are slow: the first of all \
+                draws.",
+        )
+        .source("what a minute on two cores allows"),
+    Field::new("block_peaks", Kind::Integer { min: 1, max: 10_000 }, Default::Integer(3))
+        .unit("peaks")
+        .meaning("Interpolation: successive peaks held out together.")
+        .source("more than one, so that a neighbor's scatter is no help"),
+    Field::new("every", Kind::Integer { min: 2, max: 1000 }, Default::Integer(4))
+        .unit("blocks")
+        .meaning(
+            "Interpolation: one of every so many blocks is held out, but never the first or the \
+                last.",
+        )
+        .source("fits keep three quarters of the peaks"),
+    Field::new("last_share", Kind::Float { min: 0.05, max: 0.8 }, Default::Float(1.0 / 3.0))
+        .meaning("Extrapolation: share of the peaks at the end that is held out."),
+    Field::new("significance", Kind::Float { min: 1e-9, max: 0.5 }, Default::Float(0.05))
+        .meaning("Largest adjusted p-value that counts as more than chance.")
+        .source("convention"),
+    Field::new("max_steps", Kind::Integer { min: 0, max: i64::MAX }, Default::Absent)
+        .meaning("Cap on the training steps, in addition to a method's own; 0 leaves it untrained."),
 ];
 
-const KIND: Field = Field {
-    key: "kind",
-    kind: Kind::Choice(KINDS),
-    default: Default::Required,
-    meaning: "Where the envelope comes from: a law of decay, or a record file.",
-    ..PLAIN
-};
+const KIND: Field = Field::new("kind", Kind::Choice(KINDS), Default::Required)
+    .meaning("Where the envelope comes from: a law of decay, or a record file.");
 
-const TITLE: Field =
-    Field { key: "title", meaning: "Title in tables and reports; left open, the section's name.", ..PLAIN };
+const TITLE: Field = Field::new("title", Kind::Text, Default::Absent)
+    .meaning("Title in tables and reports; left open, the section's name.");
 
-const PIPELINE: Field = Field {
-    key: "pipeline",
-    kind: Kind::Choice(&["paper", "recommended", "samples"]),
-    default: Default::Text("recommended"),
-    meaning: "Pipeline from the record to its envelope: the paper's, the recommended one, or a fit of the samples.",
-    ..PLAIN
-};
+const PIPELINE: Field =
+    Field::new("pipeline", Kind::Choice(&["paper", "recommended", "samples"]), Default::Text("recommended"))
+        .meaning(
+            "Pipeline from the record to its envelope: the paper's, the recommended one, or a fit \
+                of the samples.",
+        );
 
 /// Keys of every simulated problem.
 const SIMULATED: &[Field] = &[
-    Field {
-        key: "amplitude",
-        kind: Kind::Float { min: 1e-9, max: 1e9 },
-        default: Default::Float(0.5),
-        unit: "rad",
-        meaning: "Amplitude of the first peak.",
-        ..PLAIN
-    },
-    Field {
-        key: "period_s",
-        kind: Kind::Float { min: 1e-9, max: 1e9 },
-        default: Default::Float(0.288),
-        unit: "s",
-        meaning: "Period; peaks of both sides lie half of it apart.",
-        source: "the paper's pendulum",
-    },
-    Field {
-        key: "peaks",
-        kind: Kind::Integer { min: 12, max: 10_000 },
-        default: Default::Integer(72),
-        meaning: "Peaks of the envelope.",
-        source: "the paper's record has 69",
-        ..PLAIN
-    },
-    Field {
-        key: "decay_rate",
-        kind: Kind::Float { min: 0.0, max: 1e9 },
-        default: Default::Required,
-        unit: "1/s",
-        meaning: "Decay rate of the viscous part.",
-        ..PLAIN
-    },
-    Field {
-        key: "scatter",
-        kind: Kind::Choice(&["amplitude", "logarithm"]),
-        default: Default::Text("amplitude"),
-        meaning: "What Gaussian scatter is added to: the amplitude, as a sensor's noise, or ln A.",
-        ..PLAIN
-    },
-    Field {
-        key: "scatter_size",
-        kind: Kind::Float { min: 0.0, max: 1e9 },
-        default: Default::Required,
-        unit: "rad on the amplitude, a number on ln A",
-        meaning: "Standard deviation of the scatter.",
-        ..PLAIN
-    },
+    Field::new("amplitude", Kind::Float { min: 1e-9, max: 1e9 }, Default::Float(0.5))
+        .unit("rad")
+        .meaning("Amplitude of the first peak."),
+    Field::new("period_s", Kind::Float { min: 1e-9, max: 1e9 }, Default::Float(0.288))
+        .unit("s")
+        .meaning("Period; peaks of both sides lie half of it apart.")
+        .source("the paper's pendulum"),
+    Field::new("peaks", Kind::Integer { min: 12, max: 10_000 }, Default::Integer(72))
+        .meaning("Peaks of the envelope.")
+        .source("the paper's record has 69"),
+    Field::new("decay_rate", Kind::Float { min: 0.0, max: 1e9 }, Default::Required)
+        .unit("1/s")
+        .meaning("Decay rate of the viscous part."),
+    Field::new("scatter", Kind::Choice(&["amplitude", "logarithm"]), Default::Text("amplitude"))
+        .meaning("What Gaussian scatter is added to: the amplitude, as a sensor's noise, or ln A."),
+    Field::new("scatter_size", Kind::Float { min: 0.0, max: 1e9 }, Default::Required)
+        .unit("rad on the amplitude, a number on ln A")
+        .meaning("Standard deviation of the scatter."),
 ];
 
-const DEAD_ZONE: Field = Field {
-    key: "dead_zone",
-    kind: Kind::Float { min: 0.0, max: 1e9 },
-    default: Default::Required,
-    unit: "rad",
-    meaning: "Half-width of the dead zone: dry friction over stiffness.",
-    ..PLAIN
-};
+const DEAD_ZONE: Field = Field::new("dead_zone", Kind::Float { min: 0.0, max: 1e9 }, Default::Required)
+    .unit("rad")
+    .meaning("Half-width of the dead zone: dry friction over stiffness.");
 
-const QUADRATIC_RATE: Field = Field {
-    key: "quadratic_rate",
-    kind: Kind::Float { min: 0.0, max: 1e9 },
-    default: Default::Required,
-    unit: "1/(s rad)",
-    meaning: "Rate q of quadratic damping: the rate at amplitude A is decay_rate + q A.",
-    ..PLAIN
-};
+const QUADRATIC_RATE: Field =
+    Field::new("quadratic_rate", Kind::Float { min: 0.0, max: 1e9 }, Default::Required)
+        .unit("1/(s rad)")
+        .meaning("Rate q of quadratic damping: the rate at amplitude A is decay_rate + q A.");
 
 /// Returns `true` if the document asks for this task.
 #[must_use]
@@ -361,9 +282,7 @@ pub(crate) fn fields_of(kind: Option<&str>) -> Vec<Field> {
         Some("record") => {
             DATA.iter()
                 // The shipped record is no default here: each problem names its own record.
-                .map(|field| {
-                    if field.key == "path" { Field { default: Default::Required, ..*field } } else { *field }
-                })
+                .map(|field| if field.key == "path" { field.default(Default::Required) } else { *field })
                 .chain([PIPELINE])
                 .collect()
         }

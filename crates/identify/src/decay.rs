@@ -40,8 +40,12 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
 }
 
 /// Returns the slope of the turning points' times against their number, in seconds, by least squares. A rough
-/// half period numbers them, so that a missed turning point does not shift the numbers of the others.
-fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
+/// half period numbers them, so that a missed turning point does not shift the numbers of the others. Each has the
+/// square of its height as its weight: noise moves a low turning point farther than a high one.
+///
+/// `None` if there is only one.
+#[must_use]
+pub fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
     let times = envelope.times_s();
     let count = times.len() as f64;
     let numbers: Vec<f64> = times
@@ -52,13 +56,21 @@ fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
             Some(*number)
         })
         .collect();
+    let heights = envelope.log_amplitudes();
+    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let weights = || heights.iter().map(|height| (2.0 * (height - highest)).exp());
     let numbers = || std::iter::once(0.0).chain(numbers.iter().copied());
-    let middle = numbers().sum::<f64>() / count;
-    let mean = times.iter().sum::<f64>() / count;
-    let centered = || numbers().zip(times).map(|(number, time)| (number - middle, time - mean));
-    let squares: f64 = centered().map(|(number, _)| number * number).sum();
-    let slope = centered().map(|(number, time)| number * time).sum::<f64>() / squares;
-    let rest: f64 = centered().map(|(number, time)| (time - slope * number).powi(2)).sum();
+    let total: f64 = weights().sum();
+    let middle = weights().zip(numbers()).map(|(weight, number)| weight * number).sum::<f64>() / total;
+    let mean = weights().zip(times).map(|(weight, time)| weight * time).sum::<f64>() / total;
+    let centered = || {
+        weights()
+            .zip(numbers().zip(times))
+            .map(|(weight, (number, time))| (weight, number - middle, time - mean))
+    };
+    let squares: f64 = centered().map(|(weight, number, _)| weight * number * number).sum();
+    let slope = centered().map(|(weight, number, time)| weight * number * time).sum::<f64>() / squares;
+    let rest: f64 = centered().map(|(weight, number, time)| weight * (time - slope * number).powi(2)).sum();
     let std_error = (rest / (count - 2.0).max(1.0) / squares).sqrt();
     (slope > 0.0).then_some(Estimated { value: slope, std_error })
 }

@@ -20,6 +20,7 @@ mod samples_pipeline;
 mod scaled;
 mod weak;
 
+pub use decay::half_period;
 pub use error::IdentifyError;
 pub use modes::{Mode, modes};
 pub use oscillator::{Basis, Estimated, LinearOscillator};

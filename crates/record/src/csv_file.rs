@@ -39,6 +39,8 @@ struct Samples {
     /// Number of lines that hold only an input, among lines between which it is held.
     held_lines: usize,
     first_missing: Option<(u64, usize)>,
+    /// `true` if a column numbers the lines.
+    is_counted: bool,
 }
 
 /// Columns that are read.
@@ -50,9 +52,18 @@ struct Chosen {
     input: Option<Pick>,
     /// `true` if other runs stand beside this one, whose lines may go on after its last.
     is_run: bool,
+    /// Numbers of the rows by a column that counts them, if there is no time column.
+    counted: Option<Vec<usize>>,
 }
 
 impl Samples {
+    /// Refuses missing cells, unless the options say what becomes of them.
+    fn refuse_missing(&self, table: &Table<'_>, treated: Missing) -> Result<(), Fault> {
+        let (Missing::Refuse, Some((line, at))) = (treated, self.first_missing) else { return Ok(()) };
+        let column = table.title(at).to_owned();
+        Err(Fault::MissingCells { line, column, count: self.missing_cells })
+    }
+
     /// Undoes the coding of the values; returns a sentence about it, and `true` if it confirms the unit.
     fn decode(&mut self, unit: Option<Unit>) -> Option<(String, bool)> {
         let plain: Vec<f64> = self.values.iter().flatten().copied().collect();
@@ -86,19 +97,19 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     };
     let rows = table.chosen(filter.as_ref())?;
     let time = roles.time()?;
-    let (value, also) = roles.value(time, &|at| Swing::of(&table.numbers(at, &rows)))?;
-    let taken: Vec<usize> = [Some(value), time].into_iter().flatten().map(|pick| pick.at).collect();
+    let (counter, counted) = if time.is_none() { table.counter(&rows).unzip() } else { (None, None) };
+    let places = time.or(counter);
+    let (value, also) = roles.value(places, &|at| Swing::of(&table.numbers(at, &rows)))?;
+    let taken: Vec<usize> = [Some(value), places].into_iter().flatten().map(|pick| pick.at).collect();
     let (input, note) = roles.input(&taken, &|at| table.is_affine([value.at, at], &rows))?;
     if let Some(fault) = filter.is_none().then(|| table.series(false)).flatten() {
         return Err(fault);
     }
     let nanoseconds = time.and_then(|time| nanoseconds(&columns, time.at));
-    let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some() };
+    findings.extend(counter.map(|pick| numbered(table.title(pick.at), pick)));
+    let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some(), counted };
     let (mut samples, held) = read(&table, &chosen, &rows, asked.missing)?;
-    if let (Missing::Refuse, Some((line, at))) = (asked.missing, samples.first_missing) {
-        let column = table.title(at).to_owned();
-        return Err(Fault::MissingCells { line, column, count: samples.missing_cells });
-    }
+    samples.refuse_missing(&table, asked.missing)?;
     if time.is_some() {
         statements.sample_rate_hz = asked.sample_rate_hz.or(statements.sample_rate_hz);
     }
@@ -167,8 +178,9 @@ fn fill(
         parsed.push(*line, *stamp, value * factor, input)?;
         numbers.push(number);
     }
-    let is_numbered =
-        samples.missing_lines > 0 && asked.missing == Missing::Segment || samples.held_lines > 0;
+    let is_numbered = samples.missing_lines > 0 && asked.missing == Missing::Segment
+        || samples.held_lines > 0
+        || samples.is_counted;
     parsed.rows = is_numbered.then_some(numbers);
     Ok(())
 }
@@ -227,6 +239,11 @@ impl Observed {
     }
 }
 
+/// Returns a sentence on samples that a column places in time.
+fn numbered(title: &str, pick: Pick) -> String {
+    format!("`{title}` {}, of which some are missing, and placed them in time", pick.because)
+}
+
 /// Returns a sentence if duplicate lines were left out.
 fn copied(count: usize) -> Option<String> {
     let which = if count == 1 { "repeats" } else { "repeat" };
@@ -272,10 +289,11 @@ fn read(
     let needed = columns.iter().map(|at| at + 1).fold(0, usize::max);
     let times =
         chosen.time.into_iter().flat_map(|time| rows.iter().filter_map(move |(_, row)| row.get(time.at)));
-    let samples = Samples { order: DateOrder::of(times.copied()), ..Samples::default() };
+    let is_counted = chosen.counted.is_some();
+    let samples = Samples { order: DateOrder::of(times.copied()), is_counted, ..Samples::default() };
     let mut reader = Reader { table, chosen, treated, held, last_input: None, samples };
     let mut number = 0;
-    for (line, row) in rows {
+    for (at, (line, row)) in rows.iter().enumerate() {
         // A row that ends before the column has an empty cell there.
         let cell = |at: usize| row.get(at).copied().unwrap_or("");
         if chosen.is_run && columns.iter().all(|at| is_missing(cell(*at))) {
@@ -287,7 +305,8 @@ fn read(
         if row.iter().skip(width).any(|field| !field.is_empty()) {
             return Err(Fault::ExtraFields { line: *line, found: row.len(), expected: width });
         }
-        number += usize::from(reader.line(*line, number, &columns, &cell)?);
+        let place = chosen.counted.as_ref().and_then(|numbers| numbers.get(at)).copied();
+        number += usize::from(reader.line(*line, place.unwrap_or(number), &columns, &cell)?);
     }
     Ok((reader.samples, finding))
 }
@@ -410,7 +429,7 @@ fn stamps(
     let Some(time) = chosen.time else {
         let rate = asked.sample_rate_hz.unwrap_or(1.0);
         let place = |(index, number): (usize, &usize)| match asked.missing {
-            Missing::Drop => index as f64 / rate,
+            Missing::Drop if chosen.counted.is_none() => index as f64 / rate,
             _ => *number as f64 / rate,
         };
         return (samples.numbers.iter().enumerate().map(place).collect(), None, Vec::new());

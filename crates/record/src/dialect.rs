@@ -151,8 +151,10 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     let dialect = tell(last);
     let (width, usual) = (usual_width(dialect, last), usual_numbers(dialect, last));
     let is_data = |line: &str| {
-        let count = dialect.numbers(&dialect.split(line));
-        count > 0 && 2 * count > usual
+        let cells = dialect.split(line);
+        let count = dialect.numbers(&cells);
+        // Facts above a header may hold more cells than the samples.
+        count > 0 && 2 * count > usual && filled(&cells) <= width
     };
     let first = lines.iter().position(|(_, line)| is_data(line)).unwrap_or(lines.len());
     let (above, _) = lines.split_at(first);
@@ -314,6 +316,7 @@ mod tests {
             ("t,w\n\"0,1\",\"0,5\"\n", ',', true, 1, "t|w"),
             ("time [s] angle [deg]\n0.1 0.5\n0.2 0.5\n", ' ', false, 1, "time [s]|angle [deg]"),
             ("Log of a swing\nRate,100\nt,w\n1,2\n2,3\n", ',', false, 3, "t|w"),
+            ("Segments,1,Size,3\nt,w\n1,2\n2,3\n3,4\n4,5\n", ',', false, 2, "t|w"),
             ("# t w\n0.1 0.5\n0.2 0.4\n", ' ', false, 1, "t|w"),
             ("%time,field.data\n1,2\n2,3\n", ',', false, 1, "time|field.data"),
             ("// rig 4\nt,joint,w\n1,a,2\n2,b,3\n", ',', false, 2, "t|joint|w"),

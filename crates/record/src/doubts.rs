@@ -58,9 +58,10 @@ pub(crate) fn doubtful_unit(values: &[f64], unit: Unit, assumed: bool) -> Option
     };
     let counts = values.iter().all(|value| value.fract() == 0.0);
     match unit {
-        Unit::Volt | Unit::Millivolt => Some(format!(
-            "{taken}, a voltage of a sensor, of which one volt was taken as one meter: frequency and damping ratio are right, \
-             sizes such as those of friction are not; convert the numbers, or set `data.unit`"
+        unit if unit.is_signal() => Some(format!(
+            "{taken}, the signal of a sensor, of which 1 {} was taken as one meter: frequency and damping ratio are right, \
+             sizes such as those of friction are not; convert the numbers, or set `data.unit`",
+            unit.si()
         )),
         Unit::Radian if assumed && counts && half > std::f64::consts::TAU => Some(format!(
             "{taken}, though they are whole numbers; if they are counts of an encoder, set `data.counts_per_turn`, or \

@@ -1,6 +1,7 @@
 //! The part of a record in which the system swings freely, between hands that lift, hold, strike and stop it.
 
 use crate::record::Record;
+use crate::recursion::is_one_motion;
 use crate::statistics::{extremes, noise_level, upper_median};
 
 /// A free swing within a record.
@@ -98,7 +99,9 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let is_swing = breaks.len() > MANY.max(2 * found.len())
         && half_swings.regular_outside(&found) > SWINGS_OUTSIDE
         || half_swings.goes_on_after(&found);
-    if is_most && !is_whole && !is_swing { found } else { Vec::new() }
+    let is_cut = is_most && !is_whole && !is_swing;
+    // Beside another mode half swings are as uneven as beside a hand.
+    if is_cut && !is_one_motion(values, half_swings.usual[1]) { found } else { Vec::new() }
 }
 
 /// Returns the motion after a rest if a record begins with one and then moves for so few half swings that these do not
@@ -349,7 +352,8 @@ impl<'a> HalfSwings<'a> {
         let from = number.checked_sub(2).and_then(turn).unwrap_or(0);
         let to = turn(number + 1).unwrap_or(usize::MAX);
         self.times.iter().zip(self.usual).any(|(times, usual)| {
-            let part = times.get(from..=to.min(times.len() - 1)).unwrap_or(times);
+            // A gap that begins at the last of them takes the turning point that would have followed.
+            let part = times.get(from..=to.saturating_add(1).min(times.len() - 1)).unwrap_or(times);
             part.windows(2).any(|pair| matches!(pair, [one, next] if next - one > GAP * usual))
         })
     }
@@ -448,7 +452,9 @@ mod tests {
     #[test]
     fn a_free_swing_is_left_whole() {
         let dry = |time: f64| (1.0 - 0.06 * time).max(0.0) * (6.0 * time).cos();
-        let motions: [&dyn Fn(f64) -> f64; 6] = [
+        let second = |time: f64| 0.5 * (-0.16 * time).exp() * (18.5 * time).cos();
+        let motions: [&dyn Fn(f64) -> f64; 7] = [
+            &|time| decay(time) + second(time),
             &decay,
             &|time| (-0.01 * time).exp() * ((6.0 * time).cos() + 0.9 * (6.4 * time).cos()),
             &|time| 0.1 * (0.08 * time).exp() * (6.0 * time).sin(),

@@ -30,6 +30,7 @@ mod options;
 mod parsed;
 mod reading;
 mod record;
+mod recursion;
 mod roles;
 mod roughness;
 mod runs;

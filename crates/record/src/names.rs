@@ -83,6 +83,12 @@ pub(crate) const INPUTS: &[&str] = &[
     "shaker",
 ];
 
+/// Names of columns that number the samples.
+pub(crate) const COUNTERS: &[&str] = &[
+    "frame", "sample", "index", "idx", "row", "n", "no", "nr", "number", "counter", "seq", "sequence",
+    "bild", "image",
+];
+
 /// Words in the names of lengths, for columns without a unit.
 pub(crate) const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];
 

@@ -51,7 +51,7 @@ fn rank(heading: &Heading, list: &[&str]) -> Option<usize> {
 
 fn drives(heading: &Heading) -> bool {
     rank(heading, TORQUES).or_else(|| rank(heading, INPUTS)).is_some()
-        || heading.unit().is_some_and(|unit| unit.dimension() == Dimension::Drive)
+        || heading.unit().is_some_and(|unit| matches!(unit.dimension(), Dimension::Drive | Dimension::Force))
 }
 
 /// Returns the quantity that a name suggests, with its rank.
@@ -265,11 +265,9 @@ impl Roles<'_> {
             .map(|(at, _)| ((false, 0, 0, false), *at))
             .collect();
         match other.as_slice() {
-            // A voltage beside a time alone is a sensor's.
+            // A voltage or a force beside a time alone is a sensor's.
             [] => match left {
-                [(at, column)]
-                    if column.heading.unit().is_some_and(|unit| unit.dimension() == Dimension::Voltage) =>
-                {
+                [(at, column)] if column.heading.unit().is_some_and(Unit::is_signal) => {
                     Ok((Pick { at: *at, because: ONLY }, None))
                 }
                 _ => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
@@ -367,10 +365,7 @@ impl Roles<'_> {
             return None;
         }
         let (quantity, rank) = observed(heading).or_else(|| {
-            heading
-                .unit()
-                .filter(|unit| unit.dimension() != Dimension::Voltage)
-                .map(|unit| (quantity_of(unit.order()), 50))
+            heading.unit().filter(|unit| !unit.is_signal()).map(|unit| (quantity_of(unit.order()), 50))
         })?;
         if self.options.quantity.is_some_and(|asked| asked != quantity && heading.unit().is_some()) {
             return None;

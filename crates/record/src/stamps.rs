@@ -118,7 +118,9 @@ pub(crate) fn statistics(
     let usual = middle(&own);
     let largest_group = stamps.chunk_by(|one, next| one == next).map(<[f64]>::len).fold(0, usize::max);
     let repeated = stamps.len() - ends.len();
-    let long = rounding_s.map_or(1.5 * usual, |step| 1.5 * usual + step.min(0.5 * usual));
+    // Steps of decimals are not exact: the last factor counts all of this length.
+    let longest = rounding_s.map_or(1.5 * usual, |step| 1.5 * usual + step.min(0.5 * usual));
+    let long = longest * (1.0 - 1e-9);
     debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
     // A record may end within a group, whose last sample is then missing.
     let whole = &numbers.ends[..ends.len() - usize::from(repeated > 0)];

@@ -6,6 +6,7 @@ use crate::dialect::{self, Layout, is_missing};
 use crate::error::Fault;
 use crate::heading::Heading;
 use crate::line::Line;
+use crate::names::COUNTERS;
 use crate::reading::NO_SEPARATOR;
 use crate::roles::{Column, Kind, Pick};
 use crate::runs::{Run, runs};
@@ -118,6 +119,25 @@ impl<'a> Table<'a> {
     /// Returns the numbers in a column, without the cells that hold none.
     pub(crate) fn numbers(&self, at: usize, rows: &[(u64, Vec<&str>)]) -> Vec<f64> {
         rows.iter().filter_map(|(_, row)| self.layout.dialect.number(row.get(at)?)).collect()
+    }
+
+    /// Returns the column that numbers the rows, with the number of each counted from the first, if some are missing: by
+    /// its name, whole numbers that increase, by 1 as a rule.
+    pub(crate) fn counter(&self, rows: &[(u64, Vec<&str>)]) -> Option<(Pick, Vec<usize>)> {
+        let named = |column: &Column| COUNTERS.iter().any(|word| column.heading.has(word));
+        let mut columns = (0..self.columns.len()).filter(|at| self.columns.get(*at).is_some_and(named));
+        columns.find_map(|at| {
+            let numbers = self.numbers(at, rows);
+            let is_whole = numbers.iter().all(|number| number.fract() == 0.0);
+            let steps = || numbers.windows(2).filter_map(|pair| Some(pair.last()? - pair.first()?));
+            let ones = steps().filter(|step| *step == 1.0).count();
+            let (complete, rises) = (ones + 1 == numbers.len(), steps().all(|step| step >= 1.0));
+            let is_counter = is_whole && rises && !complete && 2 * ones > numbers.len();
+            let first = *numbers.first()?;
+            let pick = Pick { at, because: "numbers the samples" };
+            (is_counter && numbers.len() == rows.len())
+                .then(|| (pick, numbers.iter().map(|number| (number - first) as usize).collect()))
+        })
     }
 
     /// Returns `true` if one column is another one in other units, except for [`ROUNDED`] of its variance.

@@ -38,6 +38,8 @@ pub enum Unit {
     KilogramForce,
     KilogramForceMeter,
     KilogramForceCentimeter,
+    Strain,
+    Microstrain,
 }
 
 /// Dimension of a quantity: decides if a column can be observed or be an input.
@@ -49,7 +51,11 @@ pub(crate) enum Dimension {
     Length,
     /// A voltage, which represents a displacement or drives a system.
     Voltage,
-    /// A torque, a force or a current: only an input, never observed.
+    /// A strain, which represents a displacement.
+    Strain,
+    /// A force, which drives a system or, alone beside a time, represents a displacement.
+    Force,
+    /// A torque or a current: only an input, never observed.
     Drive,
 }
 
@@ -62,9 +68,9 @@ const TURN: f64 = std::f64::consts::TAU;
 /// Standard gravity, in m/s².
 const GRAVITY: f64 = 9.806_65;
 
-use Dimension::{Angle, Drive, Length, Voltage};
+use Dimension::{Angle, Drive, Force, Length, Strain, Voltage};
 
-/// All units. Those up to `g`, and `mV`, can be observed.
+/// All units. [`Unit::NAMES`] are those that can be observed.
 #[rustfmt::skip]
 const TABLE: &[Row] = &[
     (Unit::Radian, "rad", 1.0, "rad", Angle, 0, &["radian", "radians"]),
@@ -89,22 +95,24 @@ const TABLE: &[Row] = &[
     (Unit::StandardGravity, "g", GRAVITY, "m/s^2", Length, 2, &["g0", "gn"]),
     (Unit::NewtonMeter, "N m", 1.0, "N m", Drive, 0, &["nm", "n_m", "n*m", "n·m", "n-m", "newtonmeter", "newtonmeters"]),
     (Unit::MillinewtonMeter, "mN m", 1e-3, "N m", Drive, 0, &["mnm", "mn_m", "mn*m", "mn·m"]),
-    (Unit::Newton, "N", 1.0, "N", Drive, 0, &["newton", "newtons"]),
-    (Unit::Millinewton, "mN", 1e-3, "N", Drive, 0, &["millinewton"]),
-    (Unit::Kilonewton, "kN", 1e3, "N", Drive, 0, &["kilonewton"]),
+    (Unit::Newton, "N", 1.0, "N", Force, 0, &["newton", "newtons"]),
+    (Unit::Millinewton, "mN", 1e-3, "N", Force, 0, &["millinewton"]),
+    (Unit::Kilonewton, "kN", 1e3, "N", Force, 0, &["kilonewton"]),
     (Unit::Ampere, "A", 1.0, "A", Drive, 0, &["amp", "amps", "ampere", "amperes"]),
     (Unit::Milliampere, "mA", 1e-3, "A", Drive, 0, &["milliamp", "milliamps"]),
     (Unit::Millivolt, "mV", 1e-3, "V", Voltage, 0, &["millivolt", "millivolts"]),
-    (Unit::KilogramForce, "kgf", GRAVITY, "N", Drive, 0, &["kp", "kilopond", "kg_f"]),
+    (Unit::KilogramForce, "kgf", GRAVITY, "N", Force, 0, &["kp", "kilopond", "kg_f"]),
     (Unit::KilogramForceMeter, "kgf m", GRAVITY, "N m", Drive, 0, &["kgf_m", "kgf*m", "kgf·m", "kgf-m", "kgm", "kg_m", "kg*m", "kg·m", "kg-m"]),
     (Unit::KilogramForceCentimeter, "kgf cm", 1e-2 * GRAVITY, "N m", Drive, 0, &["kgf_cm", "kgf*cm", "kgf·cm", "kgf-cm", "kgcm", "kg_cm", "kg*cm", "kg·cm", "kg-cm"]),
+    (Unit::Strain, "m/m", 1.0, "m/m", Strain, 0, &["mm/mm"]),
+    (Unit::Microstrain, "um/m", 1e-6, "m/m", Strain, 0, &["µm/m", "μm/m", "µε", "με", "ue", "microstrain", "ustrain", "µstrain", "μstrain"]),
 ];
 
 impl Unit {
     /// Symbols of all units that can be observed, as configurations write them.
     pub const NAMES: &'static [&'static str] = &[
         "rad", "deg", "mrad", "turn", "m", "cm", "mm", "um", "in", "V", "rad/s", "deg/s", "rpm", "m/s",
-        "cm/s", "mm/s", "rad/s^2", "deg/s^2", "m/s^2", "g", "mV",
+        "cm/s", "mm/s", "rad/s^2", "deg/s^2", "m/s^2", "g", "mV", "m/m", "um/m", "N", "mN", "kN", "kgf",
     ];
 
     /// Symbols of all units that an input can have, as configurations write them.
@@ -149,6 +157,13 @@ impl Unit {
     #[must_use]
     pub fn si(self) -> &'static str {
         self.row().3
+    }
+
+    /// Returns `true` for the signal of a sensor that represents a displacement by a factor of its own: a voltage, a strain
+    /// or a force.
+    #[must_use]
+    pub fn is_signal(self) -> bool {
+        matches!(self.dimension(), Dimension::Voltage | Dimension::Strain | Dimension::Force)
     }
 
     pub(crate) fn dimension(self) -> Dimension {

@@ -124,7 +124,8 @@ pub(crate) fn next(result: &EstimationResult) -> Vec<String> {
              nearest to the record into a new folder, and prints the call that diagnoses what it lacks."
         ));
         steps.push(format!(
-            "Compare other methods on the same envelope: “trainer configs/compare.toml data.path={path}”."
+            "Compare other methods on the same envelope: “trainer configs/compare.toml data.path={path}”, in the folder of \
+             the project's sources."
         ));
     }
     steps

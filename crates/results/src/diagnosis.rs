@@ -257,7 +257,7 @@ pub struct GapMaps {
 }
 
 /// Shares of the gap that remains after recalibration, by class of cause.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct BudgetShares {
     /// Causes that take energy out.
     #[serde(deserialize_with = "null_is_not_a_number")]
@@ -427,7 +427,7 @@ pub struct KindRow {
 }
 
 /// Log evidence for a class, in nats.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ClassEvidenceRow {
     /// Log evidence of the best set with the class over the best set without it, from predictions of held-out
     /// parts.

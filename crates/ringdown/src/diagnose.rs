@@ -109,7 +109,8 @@ pub fn diagnose_watched(
     let given = records.iter().map(|record| record.loaded.given(&nominal.stated));
     let given = given.collect::<Result<Vec<_>, _>>()?;
     let question = Question::new(given, nominal.stated.clone(), nominal.name.clone())?;
-    let Answer { found, repaired, result } = question.answer_watched(&settings, options.seed, goes_on)?;
+    let Answer { found, repaired, result } =
+        question.answer_watched(&settings, options.seed, &|stage| goes_on(stage.name()))?;
     Ok(Diagnosis { result, repaired, series: series_rows(&found.series) })
 }
 

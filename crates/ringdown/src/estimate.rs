@@ -3,13 +3,14 @@
 use crate::error::Error;
 use crate::record::Record;
 use envelope::Extraction;
-use estimator::{Cancel, Estimator, FitContext, Reached, Silent, Stop, Uncertainty};
+use estimator::{Cancel, Estimator, FitContext, Reached, Silent};
 use experiment::{Experiment, Pipeline, Single, Task, resolve};
 use oracle::DecayFit;
-use oracle::classical::{self, CLASSICAL};
+use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
 use seed::Seed;
 use settings::Document;
+use workflow::estimate::{of_line, scaled};
 
 /// Options of an estimate, with the defaults of the command line.
 #[derive(Debug, Clone, PartialEq)]
@@ -204,8 +205,7 @@ impl Prepared {
             seed: options.seed,
             source,
         })?;
-        let made = self.estimate(fit.decay_rate, fit.uncertainty, fit.stop);
-        Estimate { steps: fit.steps, equation: fit.equation, ..made }.finite(name, options.seed)
+        self.estimate(name, fit, options.seed)
     }
 
     fn classical(&self, id: &str, options: &EstimateOptions) -> Result<Estimate, Error> {
@@ -216,50 +216,32 @@ impl Prepared {
         let envelope = &self.extraction.envelope;
         let fit = (route.fit)(envelope, &Seed::new(options.seed).child(id))
             .map_err(|source| Error::LeastSquares { record: id.to_owned(), source })?;
-        let degrees = envelope.len() as f64 - 2.0;
-        let uncertainty =
-            fit.std_error.and_then(|error| Uncertainty::students_t(fit.decay_rate, error, degrees));
-        let reached = match fit.reached {
-            classical::Reached::Converged => Reached::Converged,
-            classical::Reached::BudgetSpent => Reached::BudgetSpent,
-            classical::Reached::Stalled => Reached::Stalled,
-        };
-        let stop = Stop { reached, because: fit.because };
-        let made = self.estimate(fit.decay_rate, uncertainty, stop);
-        Estimate { steps: fit.steps, ..made }.finite(id, options.seed)
+        self.estimate(id, of_line(envelope, fit, &[]), options.seed)
     }
 
-    /// Creates an estimate from a decay rate and its stated error. The stated error assumes equal scatter of
-    /// the peaks and is rescaled to the scatter of this record.
-    fn estimate(&self, rate: f64, stated: Option<Uncertainty>, stop: Stop) -> Estimate {
+    /// Creates an estimate from a method's. The stated error assumes equal scatter of the peaks and is rescaled to the
+    /// scatter of this record.
+    fn estimate(&self, method: &str, found: estimator::Estimate, seed: u64) -> Result<Estimate, Error> {
+        let rate = found.decay_rate;
+        if !rate.is_finite() {
+            return Err(Error::NotFinite { method: method.to_owned(), seed });
+        }
         let envelope = &self.extraction.envelope;
-        let factor = self.reference.scatter_factor;
+        let stated = scaled(&self.reference, found.uncertainty, rate);
         let damping_ratio = envelope.damping_ratio(rate);
-        Estimate {
+        Ok(Estimate {
             damping_ratio,
-            damping_ratio_std_error: stated
-                .map(|own| envelope.damping_ratio_error(rate, factor * own.std_error)),
+            damping_ratio_std_error: stated.map(|own| envelope.damping_ratio_error(rate, own.std_error)),
             decay_rate: rate,
-            decay_rate_interval_95: stated
-                .map(|own| own.interval_95.map(|bound| rate + factor * (bound - rate))),
+            decay_rate_interval_95: stated.map(|own| own.interval_95),
             omega_rad_s: envelope.omega_rad_s(),
             peaks: envelope.len(),
             least_squares: self.reference.zeta,
             error_percent: scoring::error_percent(damping_ratio, self.reference.zeta),
-            reached: stop.reached,
-            because: stop.because,
-            steps: 0,
-            equation: None,
-        }
-    }
-}
-
-impl Estimate {
-    fn finite(self, method: &str, seed: u64) -> Result<Self, Error> {
-        if self.decay_rate.is_finite() {
-            Ok(self)
-        } else {
-            Err(Error::NotFinite { method: method.to_owned(), seed })
-        }
+            reached: found.stop.reached,
+            because: found.stop.because,
+            steps: found.steps,
+            equation: found.equation,
+        })
     }
 }

@@ -100,7 +100,12 @@ pub fn diagnose_robot(
     };
     let question =
         RobotQuestion::of(Arc::clone(&robot.model), robot.name.clone(), logs, &asked, &options.reading)?;
-    let answer = question.answer(&options.diagnosis.settings()?, options.diagnosis.seed, goes_on, &|_| {});
+    let answer = question.answer(
+        &options.diagnosis.settings()?,
+        options.diagnosis.seed,
+        &|stage| goes_on(stage.name()),
+        &|_| {},
+    );
     Ok(Joints { answer })
 }
 

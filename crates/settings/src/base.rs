@@ -1,4 +1,8 @@
 //! Base files of a configuration: `base = "rig.toml"`, or a list of files.
+//!
+//! A file replaces values of its base files and changes none of them in another way, and every value records where it
+//! was written. Required keys are asked of the merged configuration, so that a file may state only what differs from
+//! its base; a misspelled key is refused in any file.
 
 use crate::document::{Document, Leaf};
 use crate::error::SettingsError;

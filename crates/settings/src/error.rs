@@ -58,6 +58,18 @@ pub enum SettingsError {
         /// Every known name.
         known: Vec<String>,
     },
+    /// A name of a thing of another kind than the expected one.
+    #[error("{origin}: `{found}` is {is}; {remedy}")]
+    OtherKind {
+        /// Place where the name was written.
+        origin: Origin,
+        /// Name as written.
+        found: String,
+        /// What it names, and what it does not.
+        is: String,
+        /// Advice to the user.
+        remedy: String,
+    },
     /// A key of the file that does not belong to the choice on the command line.
     #[error("{origin}: `{key}` is no key of `{chosen}`; {remedy}")]
     ForeignKey {

@@ -122,6 +122,50 @@ pub struct Field {
     pub source: &'static str,
 }
 
+impl Field {
+    /// Creates a key without unit, meaning and source of the default.
+    #[must_use]
+    pub const fn new(key: &'static str, kind: Kind, default: Default) -> Self {
+        Self { key, kind, default, unit: "", meaning: "", source: "" }
+    }
+
+    /// Returns the field under another key.
+    #[must_use]
+    pub const fn key(self, key: &'static str) -> Self {
+        Self { key, ..self }
+    }
+
+    /// Returns the field with another kind.
+    #[must_use]
+    pub const fn kind(self, kind: Kind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// Returns the field with another default.
+    #[must_use]
+    pub const fn default(self, default: Default) -> Self {
+        Self { default, ..self }
+    }
+
+    /// Returns the field with this unit.
+    #[must_use]
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// Returns the field with this meaning, a sentence.
+    #[must_use]
+    pub const fn meaning(self, meaning: &'static str) -> Self {
+        Self { meaning, ..self }
+    }
+
+    /// Returns the field with this source of its default.
+    #[must_use]
+    pub const fn source(self, source: &'static str) -> Self {
+        Self { source, ..self }
+    }
+}
+
 /// A table of a configuration and the keys it may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section<'a> {

@@ -13,14 +13,10 @@
 //! ```
 //! use settings::{Default, Document, Field, Kind, Resolved, Section};
 //!
-//! const FIT: &[Field] = &[Field {
-//!     key: "max_steps",
-//!     kind: Kind::Integer { min: 1, max: 10_000 },
-//!     default: Default::Integer(100),
-//!     unit: "steps",
-//!     meaning: "Most steps of the fit.",
-//!     source: "",
-//! }];
+//! const FIT: &[Field] =
+//!     &[Field::new("max_steps", Kind::Integer { min: 1, max: 10_000 }, Default::Integer(100))
+//!         .unit("steps")
+//!         .meaning("Most steps of the fit.")];
 //! let sections = [Section { name: "fit", fields: FIT }];
 //!
 //! let mut document = Document::parse("fit.toml", "[fit]\nmax_steps = 20\n")?;

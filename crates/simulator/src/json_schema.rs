@@ -5,7 +5,7 @@ use crate::plan::{
     ConfiguredUnits, EFFECT_ID, NOMINAL_CHOICES, PROBABILITY, noise_key, nominal_keys, parameter_keys,
     start_keys,
 };
-use crate::schema::{PLAIN, PRIOR, SECTIONS};
+use crate::schema::{PRIOR, SECTIONS};
 use dynamics::{REGISTRY, Range, UNNAMED};
 use serde_json::{Map, Value, json};
 use settings::{Default, Field, Kind, json_schema};
@@ -90,14 +90,9 @@ fn add(root: &mut Value, table: &str, keys: &[NumberKey]) {
 
 /// Returns the schema of a number that may be drawn: a value, or a prior.
 fn number(key: &NumberKey) -> Value {
-    let fixed = Field {
-        key: key.key,
-        kind: Kind::Float { min: f64::MIN, max: f64::MAX },
-        default: key.default,
-        unit: key.unit,
-        meaning: key.meaning,
-        ..PLAIN
-    };
+    let fixed = Field::new(key.key, Kind::Float { min: f64::MIN, max: f64::MAX }, key.default)
+        .unit(key.unit)
+        .meaning(key.meaning);
     let mut value = json!({ "type": "number" });
     bound(&mut value, &key.range);
     let mut schema = json!({

@@ -1,7 +1,7 @@
 //! Number of a configuration that may be drawn: `torque = 7e-5`, or `torque = { from = 1e-5, to = 1e-4 }`.
 
 use crate::prior::Prior;
-use crate::schema::{PLAIN, PRIOR};
+use crate::schema::PRIOR;
 use dynamics::Range;
 use seed::Seed;
 use serde::Deserialize;
@@ -62,7 +62,7 @@ pub(crate) fn declare(
     for key in keys {
         if is_drawn(document, table, key) {
             let unit = |field: &Field| if field.key == "scale" { "" } else { key.unit };
-            let prior = PRIOR.iter().map(|field| Field { unit: unit(field), ..*field });
+            let prior = PRIOR.iter().map(|field| field.unit(unit(field)));
             sections.push((dotted(table, key.key), prior.collect()));
         } else {
             // The bounds of a `Kind` are inclusive.
@@ -70,14 +70,11 @@ pub(crate) fn declare(
                 Range { minimum: 0.0, closed: false, .. } => f64::MIN_POSITIVE,
                 Range { minimum, .. } => minimum,
             };
-            fields.push(Field {
-                key: key.key,
-                kind: Kind::Float { min, max: key.range.maximum },
-                default: key.default,
-                unit: key.unit,
-                meaning: key.meaning,
-                ..PLAIN
-            });
+            fields.push(
+                Field::new(key.key, Kind::Float { min, max: key.range.maximum }, key.default)
+                    .unit(key.unit)
+                    .meaning(key.meaning),
+            );
         }
     }
     (fields, sections)

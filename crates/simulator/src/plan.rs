@@ -1,7 +1,7 @@
 //! Plan of a simulation: the systems and records to be drawn, as configured.
 
 use crate::number::{Number, NumberKey, bad_value, declare, dotted, read, read_all};
-use crate::schema::{PLAIN, SECTIONS};
+use crate::schema::SECTIONS;
 use dynamics::chain::Observed;
 use dynamics::{Coordinate, Description, Effect, REGISTRY, Range, Units};
 use serde::Deserialize;
@@ -106,36 +106,19 @@ struct EffectKeys {
 
 /// Keys of the nominal oscillator that are never drawn.
 pub(crate) const NOMINAL_CHOICES: [Field; 2] = [
-    Field {
-        key: "coordinate",
-        kind: Kind::Choice(&["angle", "displacement"]),
-        default: Default::Text("angle"),
-        meaning: "What moves: an angle in rad, or a displacement in m.",
-        ..PLAIN
-    },
-    Field {
-        key: "sensor_resolution",
-        kind: Kind::Float { min: 1e-15, max: f64::MAX },
-        unit: "rad or m",
-        meaning: "The sensor's resolution as stated in nominal.toml; it changes no sample.",
-        ..PLAIN
-    },
+    Field::new("coordinate", Kind::Choice(&["angle", "displacement"]), Default::Text("angle"))
+        .meaning("What moves: an angle in rad, or a displacement in m."),
+    Field::new("sensor_resolution", Kind::Float { min: 1e-15, max: f64::MAX }, Default::Absent)
+        .unit("rad or m")
+        .meaning("The sensor's resolution as stated in nominal.toml; it changes no sample."),
 ];
 
-pub(crate) const PROBABILITY: Field = Field {
-    key: "probability",
-    kind: Kind::Float { min: 0.0, max: 1.0 },
-    default: Default::Float(1.0),
-    meaning: "Chance that a system has the effect; with simulate.effects_per_system its weight.",
-    ..PLAIN
-};
+pub(crate) const PROBABILITY: Field =
+    Field::new("probability", Kind::Float { min: 0.0, max: 1.0 }, Default::Float(1.0))
+        .meaning("Chance that a system has the effect; with simulate.effects_per_system its weight.");
 
-pub(crate) const EFFECT_ID: Field = Field {
-    key: "id",
-    default: Default::Required,
-    meaning: "The effect, as `trainer list effects` names it.",
-    ..PLAIN
-};
+pub(crate) const EFFECT_ID: Field = Field::new("id", Kind::Text, Default::Required)
+    .meaning("The effect, as `trainer list effects` names it.");
 
 pub(crate) fn nominal_keys(units: ConfiguredUnits) -> [NumberKey; 5] {
     use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};

@@ -39,7 +39,8 @@ Examples:
   trainer diagnose record.csv --nominal nominal.toml
   trainer configs/learn.toml                      the dynamics, learned and judged on unseen records
   trainer predict MODEL record.csv                a learned model on a record
-  trainer new estimator NAME --kind sequence      a learner of your own, which trains at once
+  trainer new learner NAME --kind sequence        a learner of your own, which trains at once
+  trainer new estimator NAME                      an estimator of your own, in every comparison
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9   every combination, resumable

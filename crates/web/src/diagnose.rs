@@ -2,7 +2,7 @@
 
 use crate::host::{Answered, Host};
 use crate::reading::reading;
-use diagnosis::Settings;
+use diagnosis::{Settings, Stage};
 use report::RunTexts;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -26,11 +26,11 @@ pub(crate) struct DiagnoseRequest {
 pub(crate) fn diagnose(logs: &[Log], request: &DiagnoseRequest, host: &dyn Host) -> Answered {
     let reading = reading(&request.reading)?;
     let said = |error: workflow::WorkflowError| error.to_string();
-    host.stage(after(""));
+    host.stage(after(None));
     let stated = nominal::parse(&request.nominal_name, &request.nominal).map_err(said)?;
     let question = Question::of_logs(logs, stated, request.nominal_name.clone(), &reading).map_err(said)?;
-    let goes_on = |done: &'static str| {
-        host.stage(after(done));
+    let goes_on = |done: Stage| {
+        host.stage(after(Some(done)));
         true
     };
     let answer =

@@ -1,7 +1,10 @@
-//! Input of an estimate: from the record to an envelope and the answer of closed-form least squares.
+//! Input of an estimate, from the record to an envelope and the answer of closed-form least squares, and the parts of an
+//! estimate that do not depend on who asks for it.
 
-use envelope::{EnvelopeError, Extraction};
+use envelope::{Envelope, EnvelopeError, Extraction};
+use estimator::{Estimate, Prediction, Reached, Stop, Uncertainty};
 use experiment::{EnvelopeSettings, Pipeline};
+use oracle::classical::{self, ClassicalFit};
 use oracle::{DecayFit, OracleError};
 use record::{Clock, ClockChoice, Record, RecordError, Source, Statements};
 use results::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
@@ -185,4 +188,45 @@ fn fit(extraction: &Extraction, oracle: &DecayFit) -> PipelineOutcome {
         zeta_std_error: oracle.zeta_std_error,
         r_squared: oracle.r_squared,
     }
+}
+
+/// Converts the line of a classical method into an estimate, with its function at `query_times` (seconds after the first
+/// peak).
+#[must_use]
+pub fn of_line(envelope: &Envelope, fit: ClassicalFit, query_times: &[f64]) -> Estimate {
+    let times = envelope.times_s();
+    let degrees = times.len() as f64 - 2.0;
+    let predictions = fit.predictions(envelope, query_times).into_iter();
+    let predictions = predictions.map(|line| Prediction::new(line.log_amplitude, line.std_error)).collect();
+    let reached = match fit.reached {
+        classical::Reached::Converged => Reached::Converged,
+        classical::Reached::BudgetSpent => Reached::BudgetSpent,
+        classical::Reached::Stalled => Reached::Stalled,
+    };
+    Estimate {
+        decay_rate: fit.decay_rate,
+        log_amplitude: fit.log_amplitude,
+        uncertainty: fit
+            .std_error
+            .and_then(|std_error| Uncertainty::students_t(fit.decay_rate, std_error, degrees)),
+        stop: Stop { reached, because: fit.because },
+        steps: fit.steps,
+        // Intercept and slope.
+        parameters: 2,
+        fitted_log_amplitudes: times.iter().map(|t| fit.log_amplitude - fit.decay_rate * t).collect(),
+        predictions,
+        equation: None,
+        model: None,
+    }
+}
+
+/// Scales a method's stated error, which assumes even scatter of ln A, to the scatter of a record, as least squares
+/// found it.
+#[must_use]
+pub fn scaled(least_squares: &DecayFit, stated: Option<Uncertainty>, decay_rate: f64) -> Option<Uncertainty> {
+    let factor = least_squares.scatter_factor;
+    stated.map(|known| Uncertainty {
+        std_error: factor * known.std_error,
+        interval_95: known.interval_95.map(|bound| decay_rate + factor * (bound - decay_rate)),
+    })
 }

@@ -31,6 +31,7 @@ mod question;
 pub mod read;
 mod repair;
 mod result;
+pub mod rigs;
 pub mod robot;
 
 pub use error::{WorkflowError, in_options};

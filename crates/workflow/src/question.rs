@@ -6,7 +6,7 @@ use crate::nominal;
 use crate::read::{Given, Loaded, Reading};
 use crate::repair::repaired;
 use crate::result::{Beside, result, series_rows};
-use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
+use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings, Stage};
 use experiment::StatedNominal;
 use export::Repaired;
 use results::DiagnosisResult;
@@ -267,8 +267,8 @@ impl Question {
         self.answer_watched(settings, seed, &|_| true)
     }
 
-    /// Computes the diagnosis as [`Question::answer`] does. `goes_on` is called with the stage's name after
-    /// each stage but the last, and ends the diagnosis if it returns `false`.
+    /// Computes the diagnosis as [`Question::answer`] does. `goes_on` is called after each stage but
+    /// the last, and ends the diagnosis if it returns `false`.
     ///
     /// # Errors
     /// Same as [`Question::answer`], and if the diagnosis was ended.
@@ -276,7 +276,7 @@ impl Question {
         &self,
         settings: &Settings,
         seed: u64,
-        goes_on: &dyn Fn(&'static str) -> bool,
+        goes_on: &dyn Fn(Stage) -> bool,
     ) -> Result<Answer, WorkflowError> {
         let start = Instant::now();
         self.answer_timed(settings, seed, &|| start.elapsed().as_secs_f64(), goes_on)
@@ -292,7 +292,7 @@ impl Question {
         settings: &Settings,
         seed: u64,
         stopwatch: &dyn Fn() -> f64,
-        goes_on: &dyn Fn(&'static str) -> bool,
+        goes_on: &dyn Fn(Stage) -> bool,
     ) -> Result<Answer, WorkflowError> {
         let observations: Vec<Observations> =
             self.given.iter().map(|given| given.observations.clone()).collect();
@@ -338,16 +338,16 @@ impl Question {
     }
 }
 
-/// Describes the work that follows a stage of a diagnosis; the empty name stands for the beginning.
+/// Describes the work that follows a stage of a diagnosis; `None` stands for the beginning.
 #[must_use]
-pub fn after(stage: &str) -> &'static str {
+pub fn after(stage: Option<Stage>) -> &'static str {
     match stage {
-        "" => "measuring the record",
-        "measurement chain" => "recalibrating the simulator",
-        "calibration" => "searching for sets of effects",
-        "search" => "fitting the best sets on every sample",
-        "fits" => "predicting held-out parts",
-        "held-out parts" => "testing the residual for further effects",
-        _ => "describing the result",
+        None => "measuring the record",
+        Some(Stage::MeasurementChain) => "recalibrating the simulator",
+        Some(Stage::Calibration) => "searching for sets of effects",
+        Some(Stage::Search) => "fitting the best sets on every sample",
+        Some(Stage::Fits) => "predicting held-out parts",
+        Some(Stage::HeldOutParts) => "testing the residual for further effects",
+        Some(Stage::LeftOver | Stage::Explanation) => "describing the result",
     }
 }

@@ -242,8 +242,8 @@ fn usual_unit(coordinate: Coordinate, quantity: Quantity) -> &'static str {
 /// is mislabeled. A voltage is accepted for a displacement and its derivatives.
 fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(), WorkflowError> {
     let expected = usual_unit(coordinate, record.quantity());
-    let voltage = record.unit() == Unit::Volt.si() && coordinate == Coordinate::Displacement;
-    if record.unit() == expected || voltage {
+    let is_signal = Unit::parse(record.unit()).is_some_and(Unit::is_signal);
+    if record.unit() == expected || is_signal && coordinate == Coordinate::Displacement {
         return Ok(());
     }
     Err(WorkflowError::OtherUnit { file: file.to_owned(), found: record.unit(), expected })

@@ -55,7 +55,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     };
     // Rounding is part of the noise floor; it is subtracted because the repaired chain may round by itself.
     let rounding = chain.iter().filter_map(|own: &Active| own.value("step")).map(|step| step * step / 12.0);
-    let noise = (found.gap.noise_floor.value.powi(2) - rounding.sum::<f64>()).max(0.0).sqrt();
+    let noise = (found.gap.noise_floor.powi(2) - rounding.sum::<f64>()).max(0.0).sqrt();
     let first = given.first();
     let (rate_hz, seconds) = first.map_or((1.0, 1.0), |given| (given.rate_hz, given.row.duration_s));
     // Uncertainty that the sensor's noise leaves in a position, and in a velocity over a swing or the record.

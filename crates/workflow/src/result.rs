@@ -3,17 +3,15 @@
 use crate::actuator;
 use crate::read::Given;
 use diagnosis::{
-    Calibrated, Cell, Diagnosis, EffectClass, Interval, KnownRow, ParameterEstimate, Series, Status, Swing,
-    backbone, surface,
+    Calibrated, Diagnosis, EffectClass, KnownRow, ParameterEstimate, Series, Status, Swing, backbone, surface,
 };
 use dynamics::{Effect, Quantity, Units};
 use experiment::Servo;
 use export::{Repaired, equation_latex, equation_text};
 use results::{
-    Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
-    ClassEvidenceRow, ClassRow, DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
-    EffectRow, Equation, GapMaps, GapSummary, KindRow, KnownEffectRow, LeftOverRow, MapCell, NextExperiment,
-    ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
+    Backbone, BackbonePoint, CalibratedRow, Calibration, ChainFinding, ChainSummary, ClassRow,
+    DIAGNOSIS_SCHEMA, DiagnosisResult, DiagnosisVerdict, EffectRow, Equation, KindRow, KnownEffectRow,
+    NextExperiment, ParameterRow, RivalRow, SeriesRow, SurfaceCell,
 };
 
 /// Records, nominal simulator and repaired simulator that belong to a diagnosis.
@@ -38,18 +36,14 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         schema: DIAGNOSIS_SCHEMA.to_owned(),
         verdict: verdict(found),
         effects: effects(found),
-        gap: gap(found),
-        place: place(found),
+        gap: found.gap.clone(),
+        place: found.place.clone(),
         // Without a record there is no reason for a clock.
         measuring_chain: chain(found, first.map_or("", |given| &given.row.clock_reason)),
         calibration: calibration(found, units),
         next_experiment: next_experiment(found),
         seconds: beside.seconds,
-        stages: found
-            .stages
-            .iter()
-            .map(|stage| StageRow { name: stage.name.to_owned(), seconds: stage.seconds })
-            .collect(),
+        stages: found.stages.clone(),
         modes: beside
             .given
             .iter()
@@ -67,17 +61,10 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         quantity: quantity.name().to_owned(),
         samples_used: found.samples_used,
         rivals: rivals(found),
-        detectability: found
-            .detectability
-            .iter()
-            .map(|row| DetectabilityRow { effect: row.effect.to_owned(), d: row.d })
-            .collect(),
+        detectability: found.detectability.clone(),
         classes: found.classes.iter().map(class_row).collect(),
-        left_over: Some(LeftOverRow {
-            share_of_gap: found.left_over.share_of_gap,
-            over_noise: found.left_over.over_noise,
-        }),
-        sets: sets(found),
+        left_over: Some(found.left_over),
+        sets: found.sets.clone(),
         rejected: found.rejected.iter().map(|set| owned(set)).collect(),
         equation: Equation { text: equation_text(beside.repaired), latex: equation_latex(beside.repaired) },
         units: [Quantity::Position, Quantity::Velocity, Quantity::Torque]
@@ -130,33 +117,6 @@ fn rivals(found: &Diagnosis) -> Vec<RivalRow> {
     found.rivals.iter().map(row).collect()
 }
 
-fn sets(found: &Diagnosis) -> Vec<SetRow> {
-    let row = |set: &diagnosis::SetScore| SetRow {
-        effects: owned(&set.effects),
-        probability: set.probability,
-        rms: set.rms,
-        evidence: set.evidence,
-    };
-    found.sets.iter().map(row).collect()
-}
-
-/// Builds the maps that locate the gap.
-fn place(found: &Diagnosis) -> GapMaps {
-    GapMaps {
-        budget: BudgetShares {
-            dissipative: found.place.budget.dissipative,
-            conservative: found.place.budget.conservative,
-            time_dependent: found.place.budget.time_dependent,
-            sensor: found.place.budget.sensor,
-            clock: found.place.budget.clock,
-        },
-        time: cells(&found.place.time),
-        amplitude: cells(&found.place.amplitude),
-        phase: cells(&found.place.phase),
-        frequency: cells(&found.place.frequency),
-    }
-}
-
 fn owned(ids: &[&'static str]) -> Vec<String> {
     ids.iter().map(|id| (*id).to_owned()).collect()
 }
@@ -166,16 +126,13 @@ fn class_row(class: &EffectClass) -> ClassRow {
     ClassRow {
         id: class.id.to_owned(),
         probability: class.probability,
-        gap_share: class.gap_share.map(with_interval),
+        gap_share: class.gap_share,
         kinds: class.kinds.iter().map(|kind| KindRow { id: kind.id.to_owned(), share: kind.share }).collect(),
         kind_is_told: class.kind_is_told,
         error_without: class.error_without,
         error_with: class.error_with,
         stability: class.stability,
-        evidence: ClassEvidenceRow {
-            replacement: class.evidence.replacement,
-            half_swings: class.evidence.half_swings,
-        },
+        evidence: class.evidence,
     }
 }
 
@@ -189,10 +146,6 @@ pub fn title(id: &str) -> String {
         Some(Status::Effect) | None => Effect::find(id).map_or(id, |effect| effect.description().title),
     }
     .to_owned()
-}
-
-fn with_interval(interval: Interval) -> WithInterval {
-    WithInterval { value: interval.value, interval_95: interval.interval_95 }
 }
 
 fn effects(found: &Diagnosis) -> Vec<EffectRow> {
@@ -218,42 +171,9 @@ fn effects(found: &Diagnosis) -> Vec<EffectRow> {
                 (parameter.name.to_owned(), row)
             })
             .collect(),
-        gap_share: effect.gap_share.map(with_interval),
+        gap_share: effect.gap_share,
     };
     found.effects.iter().map(row).collect()
-}
-
-fn gap(found: &Diagnosis) -> GapSummary {
-    let gap = &found.gap;
-    GapSummary {
-        unit: gap.unit.to_owned(),
-        nominal: gap.nominal,
-        recalibrated: gap.recalibrated,
-        repaired: gap.repaired,
-        ceiling: gap.ceiling,
-        noise_floor: gap.noise_floor.value,
-        noise_floor_interval_95: gap.noise_floor.interval_95,
-        closure: with_interval(gap.closure),
-        closure_of_recalibrated: with_interval(gap.closure_of_recalibrated),
-        ratio_to_floor: gap.ratio_to_floor.value,
-        ratio_to_floor_interval_95: gap.ratio_to_floor.interval_95,
-        last_third: gap.last_third,
-        held_out: gap.held_out.clone(),
-    }
-}
-
-fn cells(cells: &[Cell]) -> Vec<MapCell> {
-    cells
-        .iter()
-        .map(|cell| MapCell {
-            bounds: cell.bounds.clone(),
-            value: cell.value,
-            repaired: cell.repaired,
-            band: cell.band,
-            significant: cell.significant,
-            samples: cell.samples,
-        })
-        .collect()
 }
 
 fn calibration(found: &Diagnosis, units: Units) -> Calibration {
@@ -262,8 +182,8 @@ fn calibration(found: &Diagnosis, units: Units) -> Calibration {
         CalibratedRow {
             nominal: own.map_or(f64::NAN, |row| row.nominal),
             unit: quantity.unit(units).to_owned(),
-            recalibrated: own.and_then(|row| row.recalibrated).map(with_interval),
-            repaired: own.and_then(|row| row.repaired).map(with_interval),
+            recalibrated: own.and_then(|row| row.recalibrated),
+            repaired: own.and_then(|row| row.repaired),
             determined: own.and_then(|row| row.determined),
         }
     };
@@ -289,8 +209,8 @@ fn known_effect(known: &KnownRow, units: Units) -> KnownEffectRow {
             unit: repaired
                 .as_ref()
                 .map_or_else(|| parameter.quantity.unit(units).to_owned(), |own| own.unit.clone()),
-            recalibrated: of(&known.recalibrated).map(|own| with_interval(own.estimate)),
-            repaired: repaired.as_ref().map(|own| with_interval(own.estimate)),
+            recalibrated: of(&known.recalibrated).map(|own| own.estimate),
+            repaired: repaired.as_ref().map(|own| own.estimate),
             determined: repaired.map(|own| own.determined),
         };
         (parameter.name.to_owned(), row)
@@ -406,13 +326,4 @@ pub fn series_rows(series: &Series) -> Vec<SeriesRow> {
         });
     }
     rows
-}
-
-#[cfg(test)]
-mod tests {
-    /// Results and diagnosis use the same distance to tell explanations apart.
-    #[test]
-    fn one_distance_tells_explanations_apart() {
-        assert_eq!(results::DISTINCT_DISTANCE, diagnosis::DISTINCT_DISTANCE);
-    }
 }

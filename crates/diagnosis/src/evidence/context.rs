@@ -5,7 +5,7 @@
     reason = "a fit has a global parameter for every calibrated number; there is a worth for every set"
 )]
 
-use crate::answer::{Detectability, Interval, Rivalry};
+use crate::answer::Rivalry;
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::evidence::held_out::{Both, HeldOut};
@@ -24,6 +24,7 @@ use crate::sets::archive::Archive;
 use crate::sets::shooting_interval::shortened;
 use crate::settings::Settings;
 use rayon::prelude::*;
+use results::{DetectabilityRow, WithInterval};
 
 /// Ratio of the squared errors without and with a shift of the rest angle below which nobody would see it: a hundredth of
 /// the error. Many samples make smaller ones significant.
@@ -98,7 +99,7 @@ pub(crate) struct Held<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shift {
     /// Constant torque that causes the shift.
-    pub(crate) torque: Interval,
+    pub(crate) torque: WithInterval,
 }
 
 impl<'a> Context<'a> {
@@ -153,7 +154,7 @@ impl<'a> Context<'a> {
         let error = (shifted.squares / shifted.freedom() * time * shifted.inverse[(0, 0)]).sqrt();
         let reach = normal_above(0.025) * error;
         let interval_95 = [torque(angle - reach), torque(angle + reach)];
-        Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
+        Some(Shift { torque: WithInterval { value: torque(angle), interval_95 } })
     }
 
     /// Returns `true` if recalibration moves the rest angle by more than chance explains: a constant torque would do
@@ -280,7 +281,7 @@ impl<'a> Context<'a> {
     /// Returns, for each effect of a set, the decrease of the sum of squares that it causes (Shapley value),
     /// and its share in the decrease by all effects. The interval of the share is from a bootstrap over
     /// segments.
-    pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
+    pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, WithInterval)> {
         let count = repaired.hypothesis.candidates.len();
         let worths = self.worths(repaired);
         let by_segment = |pick: &[usize]| -> Vec<f64> {
@@ -306,7 +307,7 @@ impl<'a> Context<'a> {
             .map(|(index, (squares, value))| {
                 let own: Vec<f64> = draws.iter().filter_map(|draw| draw.get(index).copied()).collect();
                 let end = |share: f64| quantile(&own, share);
-                (*squares, Interval { value, interval_95: [end(0.025), end(0.975)] })
+                (*squares, WithInterval { value, interval_95: [end(0.025), end(0.975)] })
             })
             .collect()
     }
@@ -346,7 +347,7 @@ impl<'a> Context<'a> {
         (nested, closest)
     }
 
-    pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<Detectability> {
+    pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<DetectabilityRow> {
         let candidates = &repaired.hypothesis.candidates;
         candidates
             .par_iter()
@@ -357,7 +358,7 @@ impl<'a> Context<'a> {
                 let reduced = known
                     .or_else(|| without(self.data, repaired, |index| index != left_out, Stopping::SEARCH))?;
                 let d = (2.0 * ratio(repaired, &reduced, self.time)).max(0.0).sqrt();
-                Some(Detectability { effect: candidate.id(), d })
+                Some(DetectabilityRow { effect: candidate.id().to_owned(), d })
             })
             .collect()
     }

@@ -5,9 +5,9 @@
 //! the swing, a damping between none and critical. The scales follow from the motion alone: its amplitude,
 //! its frequency, the inertia.
 
-use crate::answer::Interval;
 use crate::data::scales::Scales;
 use dynamics::Quantity;
+use results::WithInterval;
 use std::f64::consts::PI;
 
 /// Returns the size at which a quantity has as much effect as all other causes of the motion.
@@ -40,14 +40,14 @@ fn scale(facts: &Scales, quantity: Quantity) -> f64 {
 }
 
 /// Returns the half width of an interval in units of the scale of the motion; infinite if it is not a number.
-pub(crate) fn reach(facts: &Scales, quantity: Quantity, estimate: &Interval) -> f64 {
+pub(crate) fn reach(facts: &Scales, quantity: Quantity, estimate: &WithInterval) -> f64 {
     let [low, high] = estimate.interval_95;
     let reach = 0.5 * (high - low) / scale(facts, quantity);
     if reach.is_nan() { f64::INFINITY } else { reach }
 }
 
 /// Returns `true` if the data determine a number.
-pub(crate) fn says_something(facts: &Scales, quantity: Quantity, estimate: &Interval) -> bool {
+pub(crate) fn says_something(facts: &Scales, quantity: Quantity, estimate: &WithInterval) -> bool {
     let [low, high] = estimate.interval_95;
     // For a position or an angle, zero does not mean absence.
     let has_a_zero = !matches!(quantity, Quantity::Position | Quantity::Angle);

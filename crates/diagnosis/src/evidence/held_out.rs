@@ -1,4 +1,7 @@
 //! Held-out prediction: residuals of a hypothesis on parts of the records that it was not fitted to.
+//!
+//! Blocks of every segment take turns. Half of the segments would have to predict amplitudes that they never had: a
+//! stop that only the first swings meet was rated at −106 nats although the set with it left a fifteenth of the error.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Fit, Point};
@@ -173,7 +176,7 @@ mod tests {
         let of =
             |id: &str| answer.classes.iter().find(|class| class.id == id).map_or(0.0, |own| own.probability);
         assert!(of("friction") > 0.9 && of("restoring") > 0.7, "{:?}", answer.classes);
-        assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor.value, "{:?}", answer.gap);
+        assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor, "{:?}", answer.gap);
     }
 
     /// The start velocity of a strongly damped joint is gone after half a second: nothing but the first samples
@@ -198,7 +201,7 @@ mod tests {
             let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Host).unwrap());
             let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
             assert!(matches!(answer.verdict.status, Status::None | Status::Calibration), "{ratio}");
-            assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor.value, "{ratio}: {:?}", answer.gap);
+            assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor, "{ratio}: {:?}", answer.gap);
         }
     }
 }

@@ -5,7 +5,7 @@
 
 #![allow(clippy::indexing_slicing, reason = "places are found among the parameters that they index")]
 
-use crate::answer::{ClassEvidence, EffectClass, Kind};
+use crate::answer::{EffectClass, Kind};
 use crate::data::segments::Data;
 use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
@@ -22,9 +22,10 @@ use crate::noise::statistics::{normal_above, resampled};
 use crate::residual::floor;
 use crate::sets::archive::vanished;
 use crate::sets::proposals::proposal;
-use crate::sets::weights::{DISTINCT_DISTANCE, Weighed, acts, best_if_nothing_is_left};
+use crate::sets::weights::{Weighed, acts, best_if_nothing_is_left};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
+use results::{ClassEvidenceRow, DISTINCT_DISTANCE};
 use seed::Seed;
 
 /// Numbers of sets whose held-out predictions are computed: the best sets, and the best sets of plain laws
@@ -216,7 +217,7 @@ impl<'a> Inclusion<'a> {
         }
         let best = if with_one.0.evidence < with_other.0.evidence { with_other } else { with_one };
         let replacement = best.0.evidence - neither.0.evidence;
-        let evidence = ClassEvidence { replacement, half_swings: None };
+        let evidence = ClassEvidenceRow { replacement, half_swings: None };
         let shown = Shown { evidence: &evidence, ratio: neither.1.error / best.1.error, most };
         Some(probability(&shown, self.sets.left_over))
     }
@@ -239,7 +240,7 @@ impl<'a> Inclusion<'a> {
             error_without: without.1.error,
             error_with: with.1.error,
             stability: self.stability(class, seed),
-            evidence: ClassEvidence {
+            evidence: ClassEvidenceRow {
                 replacement: with.0.evidence - without.0.evidence,
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },

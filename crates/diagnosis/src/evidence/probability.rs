@@ -32,8 +32,12 @@
 //! Eighteen further features, the share of the error that the best set leaves and the stability of a class
 //! among them, lowered the cross-validated log loss by less than 0.2 % where something is left.
 //! Gradient-boosted trees on all of them lowered it by 5 % and did not lower the calibration error.
+//!
+//! At first, the evidence was taken at face value where nothing is left, and one learned function served elsewhere.
+//! Alone, that function names 46 % of single effects far below the noise of a sample; the two functions together name
+//! 88 %.
 
-use crate::answer::ClassEvidence;
+use results::ClassEvidenceRow;
 
 /// Coefficients of a logistic function.
 struct Learned {
@@ -55,7 +59,7 @@ const CLEAN: Learned =
 
 /// Evidence for a class, or for one of two that replace each other.
 pub(crate) struct Shown<'e> {
-    pub(crate) evidence: &'e ClassEvidence,
+    pub(crate) evidence: &'e ClassEvidenceRow,
     /// Held-out error without the class over that with it.
     pub(crate) ratio: f64,
     /// Largest log evidence by replacement of any class.
@@ -99,11 +103,11 @@ pub(crate) fn probability(shown: &Shown<'_>, left_over: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{Shown, probability};
-    use crate::answer::ClassEvidence;
+    use results::ClassEvidenceRow;
 
     /// Probability of a class that leads.
     fn of_class(replacement: f64, half_swings: Option<f64>, ratio: f64, left_over: f64) -> f64 {
-        let evidence = ClassEvidence { replacement, half_swings };
+        let evidence = ClassEvidenceRow { replacement, half_swings };
         probability(&Shown { evidence: &evidence, ratio, most: replacement }, left_over)
     }
 
@@ -120,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_class_that_leads_is_the_surer() {
-        let evidence = ClassEvidence { replacement: 30.0, half_swings: None };
+        let evidence = ClassEvidenceRow { replacement: 30.0, half_swings: None };
         let of = |most| probability(&Shown { evidence: &evidence, ratio: 2.0, most }, LEFT);
         assert!(of(30.0) > of(40.0) + 0.1);
     }
@@ -128,7 +132,7 @@ mod tests {
     /// A record that supports no class most probably lacks nothing.
     #[test]
     fn where_no_class_has_evidence_each_is_improbable() {
-        let evidence = ClassEvidence { replacement: -3.0, half_swings: None };
+        let evidence = ClassEvidenceRow { replacement: -3.0, half_swings: None };
         let of = |most| probability(&Shown { evidence: &evidence, ratio: 1.0, most }, 0.0);
         assert!(of(0.0) < 0.005 && of(20.0) > 0.03);
     }

@@ -2,12 +2,12 @@
 
 #![allow(clippy::indexing_slicing, reason = "columns are those of the dictionary")]
 
-use crate::answer::Budget;
 use crate::evidence::shapley::shapley;
 use crate::linear::dictionary::Dictionary;
 use crate::matrices::{ridged, solve};
 use dynamics::Class;
 use nalgebra::DMatrix;
+use results::BudgetShares;
 
 /// Classes in the order of the budget.
 pub(crate) const CLASSES: [Class; 5] =
@@ -40,7 +40,7 @@ fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
 ///
 /// `named` holds class and squares of each named effect; `left` is the sum of squares beyond the noise that
 /// they leave.
-pub(crate) fn budget(named: &[(Class, f64)], left: f64, dictionary: Option<&Dictionary>) -> Budget {
+pub(crate) fn budget(named: &[(Class, f64)], left: f64, dictionary: Option<&Dictionary>) -> BudgetShares {
     let mut shares = [0.0; 5];
     for (class, squares) in named {
         for (own, share) in CLASSES.iter().zip(&mut shares) {
@@ -63,10 +63,10 @@ pub(crate) fn budget(named: &[(Class, f64)], left: f64, dictionary: Option<&Dict
     }
     let total: f64 = shares.iter().sum();
     if total <= 0.0 {
-        return Budget::default();
+        return BudgetShares::default();
     }
     let [dissipative, conservative, time_dependent, sensor, clock] = shares.map(|share| share / total);
-    Budget { dissipative, conservative, time_dependent, sensor, clock }
+    BudgetShares { dissipative, conservative, time_dependent, sensor, clock }
 }
 
 #[cfg(test)]

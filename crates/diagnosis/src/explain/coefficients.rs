@@ -2,7 +2,7 @@
 
 #![allow(clippy::indexing_slicing, reason = "callers find the index among the fit's own parameters")]
 
-use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
+use crate::answer::{Calibrated, KnownRow, ParameterEstimate};
 use crate::evidence::context::Context;
 use crate::evidence::determined::says_something;
 use crate::fit::fitted::Fit;
@@ -12,16 +12,17 @@ use crate::model::hypothesis::{Calibrated as Coefficient, Known};
 use crate::noise::statistics::normal_above;
 use dynamics::{NominalSimulator, Units};
 use record::Quantity;
+use results::WithInterval;
 
-pub(crate) fn around(value: f64, error: f64) -> Interval {
+pub(crate) fn around(value: f64, error: f64) -> WithInterval {
     // A standard error from [`UNBOUNDED`] counts as infinite, whatever the variance that multiplied it.
     let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
     let reach = normal_above(0.025) * error;
-    Interval { value, interval_95: [value - reach, value + reach] }
+    WithInterval { value, interval_95: [value - reach, value + reach] }
 }
 
 /// Returns the estimate and 95 % interval of a global parameter.
-pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
+pub(crate) fn interval(fit: &Fit, index: usize) -> WithInterval {
     around(fit.point.globals[index], (fit.variance() * fit.inverse[(index, index)]).max(0.0).sqrt())
 }
 

@@ -1,8 +1,7 @@
 //! Conclusions from the fits: a probability for every effect, and the verdict.
 
 use crate::answer::{
-    ClassEvidence, EffectClass, EffectProbability, Finding, Interval, Kind, ParameterEstimate, Rivalry,
-    Status, Verdict,
+    EffectClass, EffectProbability, Finding, Kind, ParameterEstimate, Rivalry, Status, Verdict,
 };
 use crate::evidence::context::{Context, Shift};
 use crate::evidence::inclusion::Inclusion;
@@ -12,7 +11,8 @@ use crate::fit::fitted::Fit;
 use crate::fit::significance::OFF_BY_CHANCE;
 use crate::model::candidate::Candidate;
 use crate::model::vocabulary::evidence_class;
-use crate::sets::weights::{DISTINCT_DISTANCE, Weighed, acts};
+use crate::sets::weights::{Weighed, acts};
+use results::{ClassEvidenceRow, DISTINCT_DISTANCE, WithInterval};
 
 /// Probability that a constant torque, and not a wrong nominal rest angle, has shifted the rest position,
 /// where this shift alone explains as much as the whole recalibration.
@@ -39,7 +39,7 @@ pub(crate) struct Parts<'a> {
     pub(crate) repaired: &'a Fit,
     /// Position-dependent torque beside them, if one was found.
     pub(crate) unnamed: Option<&'a Unnamed>,
-    pub(crate) shares: &'a [(f64, Interval)],
+    pub(crate) shares: &'a [(f64, WithInterval)],
     pub(crate) classes: &'a [EffectClass],
     pub(crate) inclusion: &'a Inclusion<'a>,
     /// Probability that no effect of the vocabulary explains what is missing.
@@ -177,7 +177,7 @@ fn fitted(parts: &Parts<'_>, candidate: Candidate) -> EffectProbability {
     let place = parts.named().iter().position(|own| *own == candidate);
     // Named effects share what the position-dependent torque leaves.
     let rest = parts.unnamed.map_or(1.0, |torque| 1.0 - torque.share.value);
-    let of_named = |share: Interval| Interval {
+    let of_named = |share: WithInterval| WithInterval {
         value: rest * share.value,
         interval_95: share.interval_95.map(|end| rest * end),
     };
@@ -200,11 +200,11 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
     for class in &mut classes {
         let own =
             parts.named().iter().zip(parts.shares).filter(|(own, _)| own.evidence_class().id() == class.id);
-        let sum = |share: Option<Interval>, own: Interval| {
-            let known = share.unwrap_or(Interval { value: 0.0, interval_95: [0.0; 2] });
+        let sum = |share: Option<WithInterval>, own: WithInterval| {
+            let known = share.unwrap_or(WithInterval { value: 0.0, interval_95: [0.0; 2] });
             let [low, high] = known.interval_95;
             let [own_low, own_high] = own.interval_95;
-            Some(Interval {
+            Some(WithInterval {
                 value: (known.value + own.value).min(1.0),
                 interval_95: [(low + own_low).min(1.0), (high + own_high).min(1.0)],
             })
@@ -241,7 +241,7 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
                 error_without: f64::NAN,
                 error_with: f64::NAN,
                 stability: 1.0,
-                evidence: ClassEvidence::default(),
+                evidence: ClassEvidenceRow::default(),
             }),
         }
     }

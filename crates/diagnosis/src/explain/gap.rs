@@ -1,10 +1,10 @@
 //! Size of the gap and its closure, with intervals.
 
-use crate::answer::{Gap, Interval};
 use crate::evidence::held_out::HeldOut;
 use crate::noise::ratio::{Block, ratio_interval};
 use crate::residual::floor::NoiseFloor;
 use nalgebra::DVector;
+use results::{GapSummary, WithInterval};
 
 /// Held-out residuals of the three simulators, and of the free latent torque.
 pub(crate) struct Stages<'a> {
@@ -83,8 +83,8 @@ pub(crate) fn gap(
     stages: &Stages<'_>,
     (floor, floors): (NoiseFloor, &[Vec<Option<f64>>]),
     last_third: [f64; 2],
-    unit: &'static str,
-) -> Gap {
+    unit: &str,
+) -> GapSummary {
     let [nominal, recalibrated, repaired] =
         [stages.nominal, stages.recalibrated, stages.repaired].map(held_out);
     let floors = of_floor(floors, &floor);
@@ -95,14 +95,14 @@ pub(crate) fn gap(
         let left =
             interval([&repaired, before, &floors], |[after, before, noise]| [after - noise, before - noise]);
         let ends = |[low, high]: [f64; 2]| [1.0 - high, 1.0 - low].map(|end| end.max(LOWEST_CLOSURE));
-        Interval { value, interval_95: left.map_or(ANY_CLOSURE, ends) }
+        WithInterval { value, interval_95: left.map_or(ANY_CLOSURE, ends) }
     };
     let over = interval([&repaired, &floors, &floors], |[after, noise, _]| [after, noise]);
     let ratio = (rm / noise).sqrt();
     let freedom: f64 = stages.repaired.residuals.iter().map(|e| e.len() as f64).sum();
     let left: f64 = stages.ceiling.iter().map(DVector::norm_squared).sum();
-    Gap {
-        unit,
+    GapSummary {
+        unit: unit.to_owned(),
         nominal: r0.sqrt(),
         recalibrated: rc.sqrt(),
         repaired: rm.sqrt(),
@@ -110,11 +110,10 @@ pub(crate) fn gap(
         ceiling: (left / freedom.max(1.0)).min(rm).sqrt(),
         closure: closed(&nominal, closure(rm, r0, noise)),
         closure_of_recalibrated: closed(&recalibrated, closure(rm, rc, noise)),
-        ratio_to_floor: Interval {
-            value: ratio,
-            interval_95: over.map_or([0.0, ratio], |ends| ends.map(|end| end.max(0.0).sqrt())),
-        },
-        noise_floor: floor,
+        ratio_to_floor: ratio,
+        ratio_to_floor_interval_95: over.map_or([0.0, ratio], |ends| ends.map(|end| end.max(0.0).sqrt())),
+        noise_floor: floor.value,
+        noise_floor_interval_95: floor.interval_95,
         last_third: last_third.map(f64::sqrt),
         held_out: "segments of about six periods (without a spring: three time constants); simulators are \
                    fitted to the even segments and scored on the odd ones, and vice versa; on the scored \

@@ -1,10 +1,10 @@
 //! Maps of the gap over time, amplitude, phase plane and frequency.
 
-use crate::answer::Cell;
 use crate::data::segments::Data;
 use crate::linear::tangent::Path;
 use crate::noise::statistics::chi_squared_above;
 use nalgebra::DVector;
+use results::MapCell;
 
 /// Probability that noise alone lifts any cell of a map above its band.
 const FAMILY: f64 = 0.05;
@@ -24,7 +24,7 @@ struct Sample {
 
 /// Computes the cells of a regular grid. The band of a cell is the noise times the square root of the upper
 /// quantile of χ²/n, at a probability shared among the cells (Bonferroni).
-fn cells(samples: &[Sample], edges: &[Vec<f64>], noise: f64) -> Vec<Cell> {
+fn cells(samples: &[Sample], edges: &[Vec<f64>], noise: f64) -> Vec<MapCell> {
     let mut bounds: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     for axis in edges {
         bounds = bounds
@@ -58,7 +58,7 @@ fn cells(samples: &[Sample], edges: &[Vec<f64>], noise: f64) -> Vec<Cell> {
             };
             let value = rms(&|sample| sample.recalibrated);
             let band = noise * (chi_squared_above(count, each) / count).sqrt();
-            Cell {
+            MapCell {
                 bounds,
                 value,
                 repaired: rms(&|sample| sample.repaired),
@@ -84,7 +84,7 @@ pub(crate) fn maps(
     recalibrated: &[DVector<f64>],
     repaired: &[DVector<f64>],
     noise: f64,
-) -> [Vec<Cell>; 4] {
+) -> [Vec<MapCell>; 4] {
     let omega = data.facts.frequency;
     let (mut time, mut amplitude, mut phase) = (Vec::new(), Vec::new(), Vec::new());
     for ((path, before), after) in paths.iter().zip(recalibrated).zip(repaired) {
@@ -116,7 +116,12 @@ pub(crate) fn maps(
 }
 
 /// Computes the RMS of a residual in bands of frequency, from the periodogram of each segment.
-fn spectrum(data: &Data, recalibrated: &[DVector<f64>], repaired: &[DVector<f64>], noise: f64) -> Vec<Cell> {
+fn spectrum(
+    data: &Data,
+    recalibrated: &[DVector<f64>],
+    repaired: &[DVector<f64>],
+    noise: f64,
+) -> Vec<MapCell> {
     let omega = data.facts.frequency;
     let highest = std::f64::consts::PI / data.interval();
     let edges: Vec<f64> = BANDS.iter().map(|band| (band * omega).min(highest)).collect();
@@ -155,7 +160,7 @@ fn spectrum(data: &Data, recalibrated: &[DVector<f64>], repaired: &[DVector<f64>
             let degrees = 2.0 * lines as f64;
             let rms = |squares: f64| (squares / total.max(1) as f64).sqrt();
             let band = rms(noise * noise * chi_squared_above(degrees, each));
-            (lines > 0).then(|| Cell {
+            (lines > 0).then(|| MapCell {
                 bounds: vec![[low, high]],
                 value: rms(before),
                 repaired: rms(after),

@@ -8,7 +8,6 @@
 //! The search for it runs after all names are given. Before, such a torque only takes part as an alternative
 //! to named effects ([`crate::search::nameless`]).
 
-use crate::answer::Interval;
 use crate::error::DiagnosisError;
 use crate::evidence::context::{Context, Held};
 use crate::evidence::held_out::{Both, HeldOut};
@@ -18,6 +17,7 @@ use crate::noise::statistics::{quantile, resampled};
 use crate::search::position_torque::{beside, evidence};
 use crate::sets::shooting_interval::shortened;
 use crate::sets::weights::EVEN;
+use results::WithInterval;
 
 /// Torque without a name, fitted beside the named effects.
 pub(crate) struct Unnamed {
@@ -32,7 +32,7 @@ pub(crate) struct Unnamed {
     pub(crate) evidence: f64,
     /// Squares that the torque explains, and their share in what the set explains with it.
     pub(crate) squares: f64,
-    pub(crate) share: Interval,
+    pub(crate) share: WithInterval,
 }
 
 /// Searches for the torque, and fits it if its gain to first order makes it more probable than not. It is
@@ -62,7 +62,7 @@ pub(crate) fn unnamed(work: &Context<'_>, held: &Held<'_>) -> Result<Option<Unna
 
 /// Returns the torque's share in all that is explained beyond recalibration, with an interval from a
 /// bootstrap over segments.
-fn share(work: &Context<'_>, named: &Fit, followed: &Fit) -> Interval {
+fn share(work: &Context<'_>, named: &Fit, followed: &Fit) -> WithInterval {
     let squares = |fit: &Fit| -> Vec<f64> {
         work.data.by_part(&fit.residuals).iter().map(|part| part.norm_squared()).collect()
     };
@@ -76,7 +76,7 @@ fn share(work: &Context<'_>, named: &Fit, followed: &Fit) -> Interval {
     };
     let seed = work.settings.seed.child("unnamed share");
     let draws: Vec<f64> = resampled(all.len(), 400, &seed).map(|drawn| of(&drawn)).collect();
-    Interval { value: of(&all), interval_95: [quantile(&draws, 0.025), quantile(&draws, 0.975)] }
+    WithInterval { value: of(&all), interval_95: [quantile(&draws, 0.025), quantile(&draws, 0.975)] }
 }
 
 #[cfg(test)]
@@ -107,14 +107,14 @@ mod tests {
     }
 
     /// Wavenumber and torque of the effect without a name, with their intervals.
-    fn torque(answer: &Diagnosis) -> Option<[crate::Interval; 2]> {
+    fn torque(answer: &Diagnosis) -> Option<[results::WithInterval; 2]> {
         let row = answer.effects.iter().find(|row| row.id == "unknown")?;
         let of = |name: &str| row.parameters.iter().find(|own| own.name == name).map(|own| own.estimate);
         row.gap_share?;
         Some([of("wavenumber")?, of("torque")?])
     }
 
-    fn holds(interval: crate::Interval, value: f64) -> bool {
+    fn holds(interval: results::WithInterval, value: f64) -> bool {
         // 1.5 times the full width of a 95 % interval: three half-widths.
         let [low, high] = interval.interval_95;
         (interval.value - value).abs() < 1.5 * (high - low)
@@ -128,7 +128,7 @@ mod tests {
         let [wavenumber, size] = torque(&answer).unwrap();
         assert!(holds(wavenumber, 20.0) && (wavenumber.value - 20.0).abs() < 0.2, "{wavenumber:?}");
         assert!(holds(size, 0.4) && (size.value / 0.4 - 1.0).abs() < 0.1, "{size:?}");
-        let ratio = answer.gap.repaired / answer.gap.noise_floor.value;
+        let ratio = answer.gap.repaired / answer.gap.noise_floor;
         assert!(ratio < 1.05, "{ratio}");
     }
 
@@ -142,7 +142,7 @@ mod tests {
         let shares: f64 =
             answer.effects.iter().filter_map(|row| row.gap_share).map(|share| share.value).sum();
         assert!((shares - 1.0).abs() < 1e-9, "{shares}");
-        let ratio = answer.gap.repaired / answer.gap.noise_floor.value;
+        let ratio = answer.gap.repaired / answer.gap.noise_floor;
         assert!(ratio < 1.05, "{ratio}");
     }
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::indexing_slicing, reason = "matrices have a row and a column for every global parameter")]
 
-use crate::answer::{Interval, RepairedSimulator, StartState, Undetermined};
+use crate::answer::{RepairedSimulator, StartState, Undetermined};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::evidence::determined::{reach, says_something};
@@ -16,6 +16,7 @@ use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::sets::shooting_interval::ShootingInterval;
 use dynamics::{Active, DynamicsError, Effect, Hold, Nominal, NominalSimulator};
 use nalgebra::DMatrix;
+use results::WithInterval;
 
 /// Number of digits kept behind the first digit of a standard error.
 const GUARD: i32 = 2;
@@ -117,7 +118,7 @@ struct Number {
 
 fn numbers(data: &Data, fit: &Fit) -> Vec<Number> {
     let facts = &data.facts;
-    let number = |name: String, held, quantity, estimate: &Interval| Number {
+    let number = |name: String, held, quantity, estimate: &WithInterval| Number {
         name,
         held,
         reach: reach(facts, quantity, estimate),

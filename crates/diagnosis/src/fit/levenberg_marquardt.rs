@@ -5,6 +5,9 @@
 //! that the cost is linear in the number of samples. Bounds hold by projection: a parameter that a step would
 //! push out of its range stays at the limit, and the step is solved again for the others.
 //!
+//! Each diagonal entry is raised by a fraction of itself. A ridge proportional to the largest entry held the
+//! coefficient of a cubic spring in place, because its unit makes its column small.
+//!
 //! # Reference
 //! Marquardt, Journal of the Society for Industrial and Applied Mathematics 11 (1963) 431 (scaling by the
 //! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (update of the damping from the gain);

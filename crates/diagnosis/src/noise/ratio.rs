@@ -1,4 +1,6 @@
 //! Confidence interval of a ratio of two sums that come in blocks.
+//!
+//! A bootstrap over a dozen segments mistook the decay of the motion for noise, or had too few segments.
 
 use crate::noise::statistics::student_above;
 

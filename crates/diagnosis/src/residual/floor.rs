@@ -4,18 +4,17 @@ use crate::data::segments::{Data, Segment};
 use crate::noise::rounding::{Rounded, rounded};
 use crate::noise::statistics::{normal_above, sixths};
 use nalgebra::DVector;
-use serde::Serialize;
 
 /// Standard deviation of the white part of a residual.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct NoiseFloor {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NoiseFloor {
     /// s₀ with s₀² = mean((e₍ᵢ₋₁₎ − 2eᵢ + e₍ᵢ₊₁₎)²)/6, in the observed quantity's unit. It includes
     /// quantization.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Lower and upper end of the 95 % interval.
-    pub interval_95: [f64; 2],
+    pub(crate) interval_95: [f64; 2],
     /// Number of second differences used.
-    pub count: usize,
+    pub(crate) count: usize,
 }
 
 /// Computes the floor from second differences of a residual.

@@ -5,6 +5,9 @@
 //! round linearizes anew at the best sets found so far. It proposes additions, replacements of members, and
 //! effects that each member is easily confused with. Every proposal is fitted in full; nothing is decided on
 //! a linearization.
+//!
+//! The best set of each size is extended, not only the best sets of all: where two effects together gain less than a
+//! third one that imitates both, neither would be extended.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;

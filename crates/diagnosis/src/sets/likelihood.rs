@@ -11,6 +11,12 @@
 //! that persists from swing to swing is worth a few dozen numbers, however many segments show it: of n segments,
 //! a band in which the closest set leaves S has the share σ²/S + (1 − σ²/S)/n of its squares.
 //!
+//! On forty rigs of another generator, the area under the curve of the classes' probabilities went from 0.928 to 0.935
+//! with the likelihood by segments, and from 79 to 91 % of the named classes act; before, all segments shared the
+//! variance of a band, so that a single bad one outweighed the others. An autoregressive noise model with a resonance
+//! made the residual white but still counted every sample of it: 7,577 nats on a measured record where the bands
+//! give 371, with the same names.
+//!
 //! # Reference
 //! Ahmed, Natarajan, Rao, IEEE Transactions on Computers C-23 (1974) 90 (the cosine transform). Whittle,
 //! Arkiv för Matematik 2 (1953) 423. Kennedy, O'Hagan, Journal of the Royal Statistical Society B 63 (2001)

@@ -27,10 +27,6 @@ const UNKNOWN_ODDS: f64 = 0.01;
 /// Log evidence in nats at which the posterior odds of [`UNKNOWN_ODDS`] are even.
 pub(crate) const EVEN: f64 = 4.605_170_185_988_091;
 
-/// Distance of two explanations, in units of the noise, below which they count as indistinguishable: 2·1.645,
-/// so that either is mistaken for the other in one of twenty records.
-pub const DISTINCT_DISTANCE: f64 = 3.29;
-
 /// Set of effects with its evidence.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighed<'a> {

@@ -1,7 +1,7 @@
 //! Assembly of the answer: verdict, classes, shares, maps, the repaired simulator and the next experiment.
 
 use super::{Judged, Measured, Refined, Remaining, Request};
-use crate::answer::{Budget, Cell, Diagnosis, MeasuringChain, Series, SetScore, Where};
+use crate::answer::{Diagnosis, MeasuringChain, Series};
 use crate::error::DiagnosisError;
 use crate::evidence::context::Context;
 use crate::evidence::held_out::HeldOut;
@@ -19,6 +19,7 @@ use crate::linear::tangent::Path;
 use crate::measurement::{chain, encoder_hysteresis};
 use crate::model::candidate::Candidate;
 use crate::sets::shooting_interval::ShootingInterval;
+use results::{BudgetShares, GapMaps, MapCell, SetRow};
 
 /// Results of all stages before.
 #[derive(Clone, Copy)]
@@ -111,7 +112,7 @@ impl All<'_> {
 
     /// Returns the place of the gap: by class of cause, and over time, amplitude, phase and frequency.
     /// `squares` is the decrease of the sum of squares by each effect of the set.
-    fn place(&self, squares: &[f64]) -> Result<Where, DiagnosisError> {
+    fn place(&self, squares: &[f64]) -> Result<GapMaps, DiagnosisError> {
         let Self { refined, judged, remaining, .. } = self;
         let (held, complete) = (&judged.held, self.complete());
         let noise = remaining.noise;
@@ -126,13 +127,13 @@ impl All<'_> {
             let at = fit(coarse, &complete.hypothesis, point, Moving::All, Stopping::HELD_OUT)?;
             budget(&total, beyond, Dictionary::at(coarse, &at, &refined.candidates).ok().as_ref())
         } else {
-            Budget::default()
+            BudgetShares::default()
         };
         let rest = refined.data.facts.rest(&complete.point.globals, &complete.hypothesis);
         let (before, after) = (&held.recalibrated.residuals, &self.after().residuals);
-        let [time, amplitude, phase, frequency]: [Vec<Cell>; 4] =
+        let [time, amplitude, phase, frequency]: [Vec<MapCell>; 4] =
             maps::maps(&refined.segments, &remaining.paths, rest, before, after, noise);
-        Ok(Where { budget, time, amplitude, phase, frequency })
+        Ok(GapMaps { budget, time, amplitude, phase, frequency })
     }
 
     fn measuring_chain(&self) -> Result<MeasuringChain, DiagnosisError> {
@@ -160,9 +161,9 @@ impl All<'_> {
         repaired_simulator(own, followed, self.request.simulator, is_rounded, refined.hold)
     }
 
-    fn sets(&self) -> Vec<SetScore> {
-        let score = |w: &crate::sets::weights::Weighed<'_>| SetScore {
-            effects: w.fit.hypothesis.ids(),
+    fn sets(&self) -> Vec<SetRow> {
+        let score = |w: &crate::sets::weights::Weighed<'_>| SetRow {
+            effects: w.fit.hypothesis.ids().into_iter().map(str::to_owned).collect(),
             probability: w.probability,
             rms: (w.fit.squares / w.fit.freedom()).sqrt(),
             evidence: w.evidence,

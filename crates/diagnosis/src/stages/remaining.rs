@@ -1,7 +1,7 @@
 //! Left-over beside the named effects: a torque without a name, noise, and everything else.
 
 use super::{Judged, Refined};
-use crate::answer::{Gap, LeftOver};
+
 use crate::error::DiagnosisError;
 use crate::evidence::context::Context;
 use crate::evidence::discrepancy;
@@ -13,6 +13,7 @@ use crate::fit::fitted::Fit;
 use crate::linear::tangent::Path;
 use crate::residual::floor;
 use crate::sets::weights::{acts, unknown};
+use results::{GapSummary, LeftOverRow};
 
 /// Error, relative to the white noise floor, above which a residual cannot be noise. First-order
 /// autoregressive noise stays below it up to a correlation of 0.84 from sample to sample.
@@ -25,7 +26,7 @@ pub(crate) struct Remaining {
     pub(crate) noise: f64,
     /// Motion along the unjoined segments.
     pub(crate) paths: Vec<Path>,
-    pub(crate) gap: Gap,
+    pub(crate) gap: GapSummary,
     /// Mean square that recalibration leaves beyond the noise.
     pub(crate) excess: f64,
     /// Probability that everything missing has no name. `left_over` is the probability that anything is left
@@ -75,7 +76,7 @@ impl Remaining {
             share = share.max((with_names - noise_square) / excess.max(f64::MIN_POSITIVE));
             evidence = f64::INFINITY;
         }
-        if gap.ratio_to_floor.interval_95[1] < 1.0 {
+        if gap.ratio_to_floor_interval_95[1] < 1.0 {
             // An error below the noise is part of the noise, whose spectrum is then not white.
             evidence = 0.0;
         }
@@ -100,8 +101,8 @@ impl Remaining {
     }
 
     /// Returns the left-over beyond the noise, relative to the gap and to the noise.
-    pub(crate) fn summary(&self) -> LeftOver {
-        LeftOver { share_of_gap: 1.0 - self.gap.closure.value, over_noise: self.gap.ratio_to_floor.value }
+    pub(crate) fn summary(&self) -> LeftOverRow {
+        LeftOverRow { share_of_gap: 1.0 - self.gap.closure.value, over_noise: self.gap.ratio_to_floor }
     }
 }
 

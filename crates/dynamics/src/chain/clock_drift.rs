@@ -41,6 +41,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.002, 0.0002],
 };
 
 /// Clock of a recorder: at true time t, counted from the first sample, it shows t + r·t + ½·r′·t².

@@ -37,6 +37,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.3, 8.0],
 };
 
 /// Samples lost in stretches of geometrically distributed length (Gilbert's channel, which is either up or

@@ -38,6 +38,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.03, 0.2],
 };
 
 /// Samples that are wrong by a normal error, each with a probability and independent of the others. A sensor

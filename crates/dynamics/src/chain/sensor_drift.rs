@@ -28,6 +28,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.01],
 };
 
 /// Linear baseline: x + d·(t − t₀), where t₀ is the first sample's time.

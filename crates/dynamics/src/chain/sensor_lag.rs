@@ -29,6 +29,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.01],
 };
 
 /// First-order low-pass filter: T·ẏ + y = x, settled at the first sample's value.

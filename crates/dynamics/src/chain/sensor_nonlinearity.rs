@@ -40,6 +40,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.02, 0.4],
 };
 
 /// Eccentrically mounted encoder disk or magnet: x + a·sin(x + φ).

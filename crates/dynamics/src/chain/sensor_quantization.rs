@@ -38,6 +38,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.05],
 };
 
 /// Readings rounded to whole multiples of a step.

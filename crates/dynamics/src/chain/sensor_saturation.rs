@@ -38,6 +38,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.5],
 };
 
 /// Readings clipped to c ± b. A clipped reading depends on the range alone.

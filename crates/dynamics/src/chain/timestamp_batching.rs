@@ -39,6 +39,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.06, 0.003],
 };
 
 /// Samples are collected and handed over in bursts; each carries the time of its burst.

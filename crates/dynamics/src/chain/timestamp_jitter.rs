@@ -29,6 +29,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.001],
 };
 
 /// Independent normal errors of the stamps. Stamps that would change places are sorted: a logger writes one

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[60.0],
 };
 
 /// Spring that is stiffer on one side: −k₂·(θ − θ_rest)².

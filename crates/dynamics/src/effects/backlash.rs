@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.01],
 };
 
 /// Play between the spring and the body: the nominal spring's torque gets a dead zone of ±b around the rest

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: true,
+    example: &[0.02],
 };
 
 /// Loop that differentiates its error, and so the command: kp·(u − θ) + kd·(u̇ − θ̇) adds T·τ̇ with the torque

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[9.0],
 };
 
 /// Preload: +τ₀. The rest position is then θ_rest + τ₀/k.

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[1.0],
 };
 
 /// Dry friction of constant size: −τ_c·sign(θ̇). At rest it holds against up to τ_c.

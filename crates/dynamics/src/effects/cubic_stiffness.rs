@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[120.0],
 };
 
 /// Spring that hardens or softens symmetrically: −k₃·(θ − θ_rest)³.

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.02],
 };
 
 /// Viscous damping that changes with time: c·(1 + α·t), which adds −c·α·t·θ̇. Time counts from 0 of the

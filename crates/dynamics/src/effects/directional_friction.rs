@@ -39,6 +39,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[1.0, 0.8],
 };
 
 /// Dry friction of τ_c + δ/2 against motion in the positive direction and of τ_c − δ/2 against motion in the

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: false,
+    example: &[0.01],
 };
 
 /// Dead band of a servo: its error e = τ/k − (θ − θ_rest), command less position, gives a proportional torque only

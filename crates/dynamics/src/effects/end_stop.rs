@@ -47,6 +47,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[-0.5, 20_000.0, 0.05],
 };
 
 /// Stop on one side (Hunt–Crossley contact with a linear spring): the torque −k_s·p·max(0, 1 + χ·ṗ) away from

@@ -45,6 +45,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 2,
     smooth: true,
+    example: &[0.05, 180.0, 0.2],
 };
 
 /// Second body on a spring and damper: +k₂·(ψ − θ) + c₂·(ψ̇ − θ̇) with the hidden motion I₂·ψ̈ = −k₂·(ψ − θ)

@@ -37,6 +37,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[1.0, -0.05],
 };
 
 /// Dry friction that falls as a joint warms, or grows: −τ_c·exp(α·t)·sign(θ̇). At rest it holds against up to

@@ -37,6 +37,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[150.0, 0.4],
 };
 
 /// Weight of an unbalanced arm: −m·g·l·sin(θ + φ).

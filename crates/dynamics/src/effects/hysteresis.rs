@@ -37,6 +37,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 1,
     smooth: false,
+    example: &[1.0, 0.01],
 };
 
 /// Dry friction with a pre-sliding spring (Dahl; Bouc–Wen with n = 1, γ = 0): −τ_h·z with the hidden state ż

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: false,
+    example: &[0.0031],
 };
 
 /// Command that arrives late: τ(t − d). The integrators read the delay and shift the input; before its first

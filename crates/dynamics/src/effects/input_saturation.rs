@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: false,
+    example: &[8.0],
 };
 
 /// Limit of the drive's torque: the input's torque is clipped at ±τ_max, which adds clip(τ, ±τ_max) − τ.

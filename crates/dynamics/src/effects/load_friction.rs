@@ -38,6 +38,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: false,
+    example: &[0.3, 0.004],
 };
 
 /// Dry friction of a gear that grows with the torque it transmits: −(τ₀ + μ·|τ_d|)·sign(θ̇), where

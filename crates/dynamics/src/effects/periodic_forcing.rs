@@ -45,6 +45,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[4.0, 31.0, 0.3],
 };
 
 /// Unmeasured shaker: +τ_f·sin(Ω·t + φ). Time counts from 0 of the record's own clock.

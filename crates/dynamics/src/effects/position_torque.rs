@@ -47,6 +47,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[8.0, 18.0, 0.7],
 };
 
 /// Torque without a name that repeats along the position: −τ·sin(n·θ + φ).

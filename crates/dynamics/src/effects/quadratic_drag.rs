@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.05],
 };
 
 /// Drag of a turbulent wake: −β·θ̇·|θ̇|. Its first derivative is continuous at rest, its second is not.

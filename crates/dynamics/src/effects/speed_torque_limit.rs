@@ -38,6 +38,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: false,
+    example: &[250.0, 30.0],
 };
 
 /// Limit of a servo's torque by the supply's voltage: along the motion the drive's torque

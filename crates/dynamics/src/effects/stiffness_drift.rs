@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.002],
 };
 
 /// Spring that changes with time: its stiffness is k·(1 + α·t), which adds −k·α·t·(θ − θ_rest). Time counts

@@ -48,6 +48,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: false,
+    example: &[0.5, 1.0, 2.0],
 };
 
 /// Dry friction that falls with speed: −[τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²)]·sign(θ̇). At rest it holds

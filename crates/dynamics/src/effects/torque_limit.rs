@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: true,
     hidden_states: 0,
     smooth: false,
+    example: &[180.0],
 };
 
 /// Limit of a servo's whole torque. Spring and damping of a servo are software, so that its torque

@@ -37,6 +37,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[0.02, 10.0],
 };
 
 /// Damping without a name: −(a·θ̇³ + b·(θ − θ_rest)²·θ̇).

@@ -27,6 +27,7 @@ const DESCRIPTION: Description = Description {
     driven_only: false,
     hidden_states: 0,
     smooth: true,
+    example: &[400.0],
 };
 
 /// Stiffness without a name: −k₅·(θ − θ_rest)⁵.

@@ -1,6 +1,6 @@
 use super::run::{Run, Stepping};
 use super::{Happening, Motion, Tolerance, Worker, simulate};
-use crate::fixtures::{EVERYTHING, command, difference, grid, nominal, with};
+use crate::fixtures::{command, difference, everything, grid, nominal, with};
 use crate::{Hold, Input, Nominal, Start, System};
 
 fn free(system: &System, start: Start, times: &[f64]) -> Motion {
@@ -114,7 +114,7 @@ fn under_quadratic_drag_the_reciprocal_amplitude_grows_linearly() {
 #[test]
 fn with_every_effect_on_the_energy_balances() {
     let nominal = nominal();
-    let system = with(nominal, EVERYTHING);
+    let system = with(nominal, &everything());
     let times = grid(30.0, 260.0);
     for hold in [Hold::Zero, Hold::Linear] {
         let input = command(30.0, hold);
@@ -124,7 +124,7 @@ fn with_every_effect_on_the_energy_balances() {
             let deflection = motion.position[i] - nominal.rest_angle();
             0.5 * motion.velocity[i].powi(2) + 0.5 * nominal.stiffness() * deflection.powi(2)
         };
-        assert_eq!(motion.accounts.len(), 2 + EVERYTHING.len());
+        assert_eq!(motion.accounts.len(), 2 + everything().len());
         for (i, time) in times.iter().enumerate() {
             let work: f64 = motion.accounts.iter().map(|account| account.work[i]).sum();
             assert!((energy(i) - energy(0) - work).abs() < 1e-11 * energy(0), "{time}");
@@ -231,7 +231,7 @@ fn collocation_has_twice_as_many_orders_as_stages() {
 
 #[test]
 fn tolerances_are_kept() {
-    let system = with(nominal(), EVERYTHING);
+    let system = with(nominal(), &everything());
     let times = grid(5.0, 100.0);
     let input = command(5.0, Hold::Linear);
     let at = |relative| {

@@ -1,5 +1,5 @@
 use super::{Free, FullState, Model, Response, Settings};
-use crate::fixtures::{CASES, EVERYTHING, command, difference, grid, nominal, with};
+use crate::fixtures::{cases, command, difference, everything, grid, nominal, with};
 use crate::reference::{Tolerance, simulate};
 use crate::{Active, Effect, Hold, Input, Nominal, Start, System};
 
@@ -16,14 +16,14 @@ fn system(effects: &[(&str, &[f64])]) -> System {
 fn trajectories_are_the_references_for_every_effect() {
     let times = grid(25.0, 260.0);
     let settings = Settings { velocity: true, acceleration: true, ..Settings::default() };
-    for case in CASES {
+    for case in cases() {
         for hold in [Hold::Zero, Hold::Linear] {
             let driven = is_driven(case.0);
             if !driven && hold == Hold::Linear {
                 continue;
             }
             let input = driven.then(|| command(25.0, hold));
-            let system = system(&[*case]);
+            let system = system(&[case]);
             let start = Start::release(0.7);
             let exact = simulate(&system, start, input.as_ref(), &times, &Tolerance::default()).unwrap();
             let mut model = Model::new(&system, &[], settings).unwrap();
@@ -203,12 +203,12 @@ fn check_columns(case: &Case<'_>, reach: f64, bar: f64) {
 fn columns_are_the_derivatives_for_every_effect_through_its_events() {
     let times = grid(2.0, 130.0);
     let start = Start { position: 0.6, velocity: 2.0 };
-    for case in CASES {
+    for case in cases() {
         let driven = is_driven(case.0);
         let linear = || command(2.0, Hold::Linear);
         let inputs = [command(2.0, Hold::Zero), linear(), linear().thinned(5)].map(Some);
         for input in if driven { &inputs[..] } else { &[None] } {
-            let system = system(&[*case]);
+            let system = system(&[case]);
             let (name, input) = (case.0, input.as_ref());
             // With a held command an edge that is met near a knot is soon met on its other side.
             let reach = if driven { 3e-5 } else { 1e-3 };
@@ -221,7 +221,7 @@ fn columns_are_the_derivatives_for_every_effect_through_its_events() {
 fn columns_are_the_derivatives_with_every_effect_on() {
     let times = grid(0.8, 300.0);
     let start = Start { position: 0.6, velocity: 2.0 };
-    let (system, input) = (system(EVERYTHING), command(0.8, Hold::Linear));
+    let (system, input) = (system(&everything()), command(0.8, Hold::Linear));
     let (name, input) = ("everything", Some(&input));
     check_columns(&Case { name, system: &system, start, input, times: &times }, 2e-4, 1e-7);
 }
@@ -248,7 +248,7 @@ fn every_effect_at_once_is_the_references_motion() {
     let times = grid(10.0, 260.0);
     for hold in [Hold::Zero, Hold::Linear] {
         let input = command(10.0, hold);
-        let system = system(EVERYTHING);
+        let system = system(&everything());
         let start = Start::release(0.7);
         let exact = simulate(&system, start, Some(&input), &times, &Tolerance::default()).unwrap();
         let mut model = Model::new(&system, &[], Settings::default()).unwrap();
@@ -275,7 +275,7 @@ fn the_sampling_does_not_matter() {
 
 #[test]
 fn segments_chain_to_the_whole() {
-    let system = system(EVERYTHING);
+    let system = system(&everything());
     let input = command(4.0, Hold::Linear);
     let times = grid(4.0, 100.0);
     let own = [Free::Stiffness, Free::Effect { id: "hysteresis", parameter: "displacement" }];

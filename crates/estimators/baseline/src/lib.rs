@@ -1,4 +1,4 @@
-//! Null estimator: no decay at all. It is the floor row of every table, and a template for new estimators.
+//! Null estimator: no decay at all. It is the floor row of every table.
 //!
 //! It returns λ = 0 and the mean of ln A for every envelope. An estimator that does not beat it has learned
 //! nothing.

@@ -20,44 +20,28 @@ pub struct EnvelopeMatchingConfig {
 
 /// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
-    Field {
-        key: "steps_per_period",
-        kind: Kind::Integer { min: 3, max: 1000 },
-        default: Default::Integer(8),
-        unit: "",
-        meaning: "Integration steps in a period of the simulated oscillator, each of order 16.",
-        source: "at 8 the error of 69 periods is 3e-13 in ln A, which is rounding; at 4 it is 2e-9",
-    },
-    Field {
-        key: "most_periods",
-        kind: Kind::Integer { min: 10, max: 10_000_000 },
-        default: Default::Integer(20_000),
-        unit: "",
-        meaning: "Most periods that are simulated; a longer record is matched by a slower oscillator.",
-        source: "0.1 s for each simulation; the envelope of a linear oscillator does not depend on its frequency",
-    },
-    Field {
-        key: "max_steps",
-        kind: Kind::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(100),
-        unit: "",
-        meaning: "Most Levenberg-Marquardt steps.",
-        source: "twenty times what ten seeds take on the measured record",
-    },
-    Field {
-        key: "step_tolerance",
-        kind: Kind::Float { min: 0.0, max: 0.1 },
-        default: Default::Float(1e-12),
-        unit: "",
-        meaning: "Matched when a step moves the scaled ln A0 and decay rate by less than this.",
-        source: "ten times what the rounding of a long simulation leaves",
-    },
-    Field {
-        key: "initial_scale",
-        kind: Kind::Float { min: 0.0, max: 10.0 },
-        default: Default::Float(0.5),
-        unit: "",
-        meaning: "Start values are uniform within plus or minus this, in spreads of ln A over the record.",
-        source: "an envelope near a line has a decay rate near 3.5 in these units: the start is no answer",
-    },
+    Field::new("steps_per_period", Kind::Integer { min: 3, max: 1000 }, Default::Integer(8))
+        .meaning("Integration steps in a period of the simulated oscillator, each of order 16.")
+        .source("at 8 the error of 69 periods is 3e-13 in ln A, which is rounding; at 4 it is 2e-9"),
+    Field::new("most_periods", Kind::Integer { min: 10, max: 10_000_000 }, Default::Integer(20_000))
+        .meaning("Most periods that are simulated; a longer record is matched by a slower oscillator.")
+        .source(
+            "0.1 s for each simulation; the envelope of a linear oscillator does not depend on \
+                its frequency",
+        ),
+    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(100))
+        .meaning("Most Levenberg-Marquardt steps.")
+        .source("twenty times what ten seeds take on the measured record"),
+    Field::new("step_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-12))
+        .meaning("Matched when a step moves the scaled ln A0 and decay rate by less than this.")
+        .source("ten times what the rounding of a long simulation leaves"),
+    Field::new("initial_scale", Kind::Float { min: 0.0, max: 10.0 }, Default::Float(0.5))
+        .meaning(
+            "Start values are uniform within plus or minus this, in spreads of ln A over the \
+                record.",
+        )
+        .source(
+            "an envelope near a line has a decay rate near 3.5 in these units: the start is no \
+                answer",
+        ),
 ];

@@ -22,7 +22,7 @@ pub struct AmortizedLstmConfig {
 
 /// Configuration keys.
 const FIELDS: &[Field] = &[
-    Field { source: "within 4 % of least squares over fresh envelopes; 24 are no nearer", ..HIDDEN_UNITS },
+    HIDDEN_UNITS.source("within 4 % of least squares over fresh envelopes; 24 are no nearer"),
     fields::LONGEST_SEQUENCE,
     fields::MOST_LOOKS,
     fields::MAX_STEPS,

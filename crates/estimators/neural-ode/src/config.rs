@@ -24,60 +24,41 @@ pub struct NeuralOdeConfig {
 
 /// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
-    Field {
-        key: "hidden",
-        kind: Kind::Integers { min: 1, max: 256, at_least: 1, at_most: 6 },
-        default: Default::Integers(&[6]),
-        unit: "",
-        meaning: "Widths of the vector field's hidden layers, each followed by tanh.",
-        source: "4, 6, 8 and 16 agree to 1e-9; 6 bends nearly as freely as 8 and trains in half the steps",
-    },
-    Field {
-        key: "solver_steps",
-        kind: Kind::Integer { min: 1, max: 100_000 },
-        default: Default::Integer(32),
-        unit: "",
-        meaning: "Steps of the Runge-Kutta method over the record, whatever the number of peaks.",
-        source: "256 change the fitted values by 2e-4 of their bend; 8 take three times the training steps",
-    },
-    Field {
-        key: "curvature_weight",
-        kind: Kind::Float { min: 1e-9, max: 1e9 },
-        default: Default::Float(1e-3),
-        unit: "",
-        meaning: "Weight of the trajectory's mean squared second derivative, in scaled units.",
-        source: "leaves residuals without correlation on the paper's record, at five degrees of freedom",
-    },
-    Field {
-        key: "weight_decay",
-        kind: Kind::Float { min: 1e-9, max: 1e9 },
-        default: Default::Float(1e-2),
-        unit: "",
-        meaning: "Weight of the sum of squared weights, those that carry lines left out.",
-        source: "every one of 100 seeds ends in the same fit; below 1e-4 weights grow without end",
-    },
-    Field {
-        key: "max_steps",
-        kind: Kind::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(2000),
-        unit: "",
-        meaning: "Most Levenberg-Marquardt steps.",
-        source: "the paper's record takes 50 to 100, the slowest of 1000 simulated envelopes 650",
-    },
-    Field {
-        key: "loss_tolerance",
-        kind: Kind::Float { min: 0.0, max: 0.1 },
-        default: Default::Float(1e-10),
-        unit: "",
-        meaning: "Training has converged when a step lowers the loss by a smaller share of itself than this.",
-        source: "leaves the decay rate within 1e-8 of its limit on 1000 simulated envelopes",
-    },
-    Field {
-        key: "initial_scale",
-        kind: Kind::Float { min: 1e-3, max: 10.0 },
-        default: Default::Float(0.5),
-        unit: "",
-        meaning: "Factor on the drawn start values of weights, biases and initial state.",
-        source: "Glorot, Bengio 2010, halved: the field is close to constant",
-    },
+    Field::new(
+        "hidden",
+        Kind::Integers { min: 1, max: 256, at_least: 1, at_most: 6 },
+        Default::Integers(&[6]),
+    )
+    .meaning("Widths of the vector field's hidden layers, each followed by tanh.")
+    .source(
+        "4, 6, 8 and 16 agree to 1e-9; 6 bends nearly as freely as 8 and trains in half the \
+                steps",
+    ),
+    Field::new("solver_steps", Kind::Integer { min: 1, max: 100_000 }, Default::Integer(32))
+        .meaning("Steps of the Runge-Kutta method over the record, whatever the number of peaks.")
+        .source(
+            "256 change the fitted values by 2e-4 of their bend; 8 take three times the training \
+                steps",
+        ),
+    Field::new("curvature_weight", Kind::Float { min: 1e-9, max: 1e9 }, Default::Float(1e-3))
+        .meaning("Weight of the trajectory's mean squared second derivative, in scaled units.")
+        .source(
+            "leaves residuals without correlation on the paper's record, at five degrees of \
+                freedom",
+        ),
+    Field::new("weight_decay", Kind::Float { min: 1e-9, max: 1e9 }, Default::Float(1e-2))
+        .meaning("Weight of the sum of squared weights, those that carry lines left out.")
+        .source("every one of 100 seeds ends in the same fit; below 1e-4 weights grow without end"),
+    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(2000))
+        .meaning("Most Levenberg-Marquardt steps.")
+        .source("the paper's record takes 50 to 100, the slowest of 1000 simulated envelopes 650"),
+    Field::new("loss_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-10))
+        .meaning(
+            "Training has converged when a step lowers the loss by a smaller share of itself than \
+                this.",
+        )
+        .source("leaves the decay rate within 1e-8 of its limit on 1000 simulated envelopes"),
+    Field::new("initial_scale", Kind::Float { min: 1e-3, max: 10.0 }, Default::Float(0.5))
+        .meaning("Factor on the drawn start values of weights, biases and initial state.")
+        .source("Glorot, Bengio 2010, halved: the field is close to constant"),
 ];

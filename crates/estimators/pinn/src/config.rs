@@ -22,52 +22,35 @@ pub struct PinnConfig {
 
 /// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
-    Field {
-        key: "hidden",
-        kind: Kind::Integers { min: 1, max: 256, at_least: 1, at_most: 6 },
-        default: Default::Integers(&[16, 16]),
-        unit: "",
-        meaning: "Widths of the hidden layers, each followed by tanh.",
-        source: "8, 16 and 32 agree to 1e-7; 16 trains in half the time of 32",
-    },
-    Field {
-        key: "collocation_points",
-        kind: Kind::Integer { min: 2, max: 100_000 },
-        default: Default::Integer(128),
-        unit: "",
-        meaning: "Points at which the physics is asked for, one drawn in each equal part of the record.",
-        source: "more than the peaks, so that the network cannot bend between them",
-    },
-    Field {
-        key: "physics_weight",
-        kind: Kind::Float { min: 1e-6, max: 1e12 },
-        default: Default::Float(1e5),
-        unit: "",
-        meaning: "Weight of the physics term against the data term.",
-        source: "leaves a bias of about 3e-3 / weight on a bent envelope; above 1e6 training turns slow",
-    },
-    Field {
-        key: "max_steps",
-        kind: Kind::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(500),
-        unit: "",
-        meaning: "Most Levenberg-Marquardt steps.",
-        source: "several times what ten seeds take on the shipped record",
-    },
-    Field {
-        key: "loss_tolerance",
-        kind: Kind::Float { min: 0.0, max: 0.1 },
-        default: Default::Float(1e-8),
-        unit: "",
-        meaning: "Training has converged when a step lowers the loss by a smaller share of itself than this.",
-        source: "MINPACK's default ftol",
-    },
-    Field {
-        key: "initial_scale",
-        kind: Kind::Float { min: 0.0, max: 10.0 },
-        default: Default::Float(0.5),
-        unit: "",
-        meaning: "Factor on the drawn start values of weights, biases and decay rate.",
-        source: "Glorot, Bengio 2010, halved: the target is close to a line",
-    },
+    Field::new(
+        "hidden",
+        Kind::Integers { min: 1, max: 256, at_least: 1, at_most: 6 },
+        Default::Integers(&[16, 16]),
+    )
+    .meaning("Widths of the hidden layers, each followed by tanh.")
+    .source("8, 16 and 32 agree to 1e-7; 16 trains in half the time of 32"),
+    Field::new("collocation_points", Kind::Integer { min: 2, max: 100_000 }, Default::Integer(128))
+        .meaning(
+            "Points at which the physics is asked for, one drawn in each equal part of the \
+                record.",
+        )
+        .source("more than the peaks, so that the network cannot bend between them"),
+    Field::new("physics_weight", Kind::Float { min: 1e-6, max: 1e12 }, Default::Float(1e5))
+        .meaning("Weight of the physics term against the data term.")
+        .source(
+            "leaves a bias of about 3e-3 / weight on a bent envelope; above 1e6 training turns \
+                slow",
+        ),
+    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(500))
+        .meaning("Most Levenberg-Marquardt steps.")
+        .source("several times what ten seeds take on the shipped record"),
+    Field::new("loss_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-8))
+        .meaning(
+            "Training has converged when a step lowers the loss by a smaller share of itself than \
+                this.",
+        )
+        .source("MINPACK's default ftol"),
+    Field::new("initial_scale", Kind::Float { min: 0.0, max: 10.0 }, Default::Float(0.5))
+        .meaning("Factor on the drawn start values of weights, biases and decay rate.")
+        .source("Glorot, Bengio 2010, halved: the target is close to a line"),
 ];

@@ -33,13 +33,13 @@ const SOURCE_OF_LENGTH: &str = "the attention costs as the square of the length;
 
 /// Configuration keys.
 const FIELDS: &[Field] = &[
-    Field { default: settings::Default::Integer(2), source: SOURCE_OF_LAYERS, ..LAYERS },
+    LAYERS.default(settings::Default::Integer(2)).source(SOURCE_OF_LAYERS),
     HEADS,
     HEAD_WIDTH,
     FEED_FORWARD_WIDTH,
-    Field { default: settings::Default::Integer(16), source: SOURCE_OF_LENGTH, ..fields::LONGEST_SEQUENCE },
+    fields::LONGEST_SEQUENCE.default(settings::Default::Integer(16)).source(SOURCE_OF_LENGTH),
     fields::MOST_LOOKS,
-    Field { default: settings::Default::Integer(450), ..fields::MAX_STEPS },
+    fields::MAX_STEPS.default(settings::Default::Integer(450)),
     fields::BATCH,
     fields::LEARNING_RATE,
     fields::CALIBRATION,

@@ -42,54 +42,32 @@ impl TransformerConfig {
 }
 
 /// Number of layers of self-attention and feed-forward, each followed by a layer norm.
-pub(crate) const LAYERS: Field = Field {
-    key: "layers",
-    kind: Kind::Integer { min: 1, max: 8 },
-    default: Default::Integer(1),
-    unit: "",
-    meaning: "Layers, each of self-attention and feed-forward, each followed by a layer norm.",
-    source: "1 to 4 agree to rounding; one trains fastest",
-};
+pub(crate) const LAYERS: Field = Field::new("layers", Kind::Integer { min: 1, max: 8 }, Default::Integer(1))
+    .meaning("Layers, each of self-attention and feed-forward, each followed by a layer norm.")
+    .source("1 to 4 agree to rounding; one trains fastest");
 
 /// Number of attention heads.
-pub(crate) const HEADS: Field = Field {
-    key: "heads",
-    kind: Kind::Integer { min: 1, max: 16 },
-    default: Default::Integer(4),
-    unit: "",
-    meaning: "Heads of the attention.",
-    source: "a small transformer for a short sequence",
-};
+pub(crate) const HEADS: Field = Field::new("heads", Kind::Integer { min: 1, max: 16 }, Default::Integer(4))
+    .meaning("Heads of the attention.")
+    .source("a small transformer for a short sequence");
 
 /// Width of a head; the width of the network is the number of heads times this.
-pub(crate) const HEAD_WIDTH: Field = Field {
-    key: "head_width",
-    kind: Kind::Integer { min: 1, max: 64 },
-    default: Default::Integer(4),
-    unit: "",
-    meaning: "Width of a head; the network's own width is heads times this.",
-    source: "a small transformer for a short sequence",
-};
+pub(crate) const HEAD_WIDTH: Field =
+    Field::new("head_width", Kind::Integer { min: 1, max: 64 }, Default::Integer(4))
+        .meaning("Width of a head; the network's own width is heads times this.")
+        .source("a small transformer for a short sequence");
 
 /// Width between the two linear maps of the feed-forward part, where the tanh is applied.
-pub(crate) const FEED_FORWARD_WIDTH: Field = Field {
-    key: "feed_forward_width",
-    kind: Kind::Integer { min: 1, max: 1024 },
-    default: Default::Integer(32),
-    unit: "",
-    meaning: "Width between the two linear maps of the feed-forward part, with tanh there.",
-    source: "twice the network's width",
-};
+pub(crate) const FEED_FORWARD_WIDTH: Field =
+    Field::new("feed_forward_width", Kind::Integer { min: 1, max: 1024 }, Default::Integer(32))
+        .meaning("Width between the two linear maps of the feed-forward part, with tanh there.")
+        .source("twice the network's width");
 
 /// Factor on the random start values of the weights before the head.
-pub(crate) const INITIAL_SCALE: Field = Field {
-    key: "initial_scale",
-    kind: Kind::Float { min: 1e-3, max: 10.0 },
-    default: Default::Float(1.0),
-    unit: "",
-    meaning: "Factor on the drawn start values of the weights before the head.",
-    source: "Glorot, Bengio 2010",
-};
+pub(crate) const INITIAL_SCALE: Field =
+    Field::new("initial_scale", Kind::Float { min: 1e-3, max: 10.0 }, Default::Float(1.0))
+        .meaning("Factor on the drawn start values of the weights before the head.")
+        .source("Glorot, Bengio 2010");
 
 /// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
@@ -97,37 +75,24 @@ pub(crate) const FIELDS: &[Field] = &[
     HEADS,
     HEAD_WIDTH,
     FEED_FORWARD_WIDTH,
-    Field {
-        key: "longest_sequence",
-        kind: Kind::Integer { min: 3, max: 1000 },
-        default: Default::Integer(256),
-        unit: "peaks",
-        meaning: "Most entries the network reads; a longer envelope is read as means over even runs of neighboring peaks. The loss is over all peaks.",
-        source: "the attention costs as the square of the length",
-    },
-    Field {
-        key: "max_steps",
-        kind: Kind::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(200),
-        unit: "",
-        meaning: "Most L-BFGS steps.",
-        source: "several times what ten seeds take on the shipped record",
-    },
-    Field {
-        key: "memory",
-        kind: Kind::Integer { min: 1, max: 100 },
-        default: Default::Integer(10),
-        unit: "",
-        meaning: "Curvature pairs that L-BFGS remembers.",
-        source: "Nocedal, Wright, Numerical Optimization (2006), section 7.2: 3 to 20",
-    },
-    Field {
-        key: "gradient_tolerance",
-        kind: Kind::Float { min: 0.0, max: 0.1 },
-        default: Default::Float(1e-13),
-        unit: "",
-        meaning: "Training has converged when the gradient has fallen to this share of its length at the start.",
-        source: "a few roundings above what double precision leaves",
-    },
+    Field::new("longest_sequence", Kind::Integer { min: 3, max: 1000 }, Default::Integer(256))
+        .unit("peaks")
+        .meaning(
+            "Most entries the network reads; a longer envelope is read as means over even runs of \
+                neighboring peaks. The loss is over all peaks.",
+        )
+        .source("the attention costs as the square of the length"),
+    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(200))
+        .meaning("Most L-BFGS steps.")
+        .source("several times what ten seeds take on the shipped record"),
+    Field::new("memory", Kind::Integer { min: 1, max: 100 }, Default::Integer(10))
+        .meaning("Curvature pairs that L-BFGS remembers.")
+        .source("Nocedal, Wright, Numerical Optimization (2006), section 7.2: 3 to 20"),
+    Field::new("gradient_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-13))
+        .meaning(
+            "Training has converged when the gradient has fallen to this share of its length at \
+                the start.",
+        )
+        .source("a few roundings above what double precision leaves"),
     INITIAL_SCALE,
 ];

@@ -55,32 +55,21 @@ impl WeakSindyConfig {
 /// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     LIBRARY,
-    Field {
-        key: "test_functions",
-        kind: Kind::Integer { min: 3, max: 1000 },
-        default: Default::Integer(200),
-        unit: "",
-        meaning: "Most test functions, narrow ones first; a function that the others already span is left \
-                  out.",
-        source: "as many as there are steps between the peaks of a usual record: nothing is lost",
-    },
-    Field {
-        key: "exponent",
-        kind: Kind::Integer { min: 1, max: 3 },
-        default: Default::Integer(2),
-        unit: "",
-        meaning: "Exponent p of the test functions (1 - u^2)^p.",
-        source: "the smallest that vanishes smoothly at the ends",
-    },
-    Field {
-        key: "terms_along",
-        kind: Kind::Choice(&["trajectory", "peaks"]),
-        default: Default::Text("trajectory"),
-        unit: "",
-        meaning: "Where the terms are evaluated in the end: along the law's \"trajectory\", or at the measured \
-                  \"peaks\" (WENDy as published).",
-        source: "the peaks' scatter biases 1/A: 0.09 % of the decay rate on the paper's envelope",
-    },
+    Field::new("test_functions", Kind::Integer { min: 3, max: 1000 }, Default::Integer(200))
+        .meaning(
+            "Most test functions, narrow ones first; a function that the others already span is \
+                left out.",
+        )
+        .source("as many as there are steps between the peaks of a usual record: nothing is lost"),
+    Field::new("exponent", Kind::Integer { min: 1, max: 3 }, Default::Integer(2))
+        .meaning("Exponent p of the test functions (1 - u^2)^p.")
+        .source("the smallest that vanishes smoothly at the ends"),
+    Field::new("terms_along", Kind::Choice(&["trajectory", "peaks"]), Default::Text("trajectory"))
+        .meaning(
+            "Where the terms are evaluated in the end: along the law's \"trajectory\", or at the \
+                measured \"peaks\" (WENDy as published).",
+        )
+        .source("the peaks' scatter biases 1/A: 0.09 % of the decay rate on the paper's envelope"),
     EVIDENCE,
     SETTLE_TOLERANCE,
     MAX_STEPS,

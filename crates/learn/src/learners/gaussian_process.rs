@@ -34,48 +34,22 @@ pub const ENTRY: Entry = Entry {
     restore: |stored| restored::<Basis>(ID, stored),
 };
 
-const PLAIN: Key =
-    Key { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 const FIELDS: &[Key] = &[
-    Key {
-        key: "functions",
-        kind: Value::Integer { min: 2, max: 30 },
-        default: Default::Integer(8),
-        meaning: "Eigenfunctions along position and along velocity; their products are the basis.",
-        ..PLAIN
-    },
-    Key {
-        key: "margin",
-        kind: Value::Float { min: 1.05, max: 10.0 },
-        default: Default::Float(1.4),
-        meaning: "Half width of the box over the farthest state visited in training.",
-        source: "Solin, Särkkä 2020: the kernel is distorted near the edge",
-        ..PLAIN
-    },
-    Key {
-        key: "dry_friction",
-        kind: Value::Boolean,
-        default: Default::Boolean(true),
-        meaning: "Whether dry friction, whose size is learned, is added to the process, which is smooth.",
-        ..PLAIN
-    },
-    Key {
-        key: "samples",
-        kind: Value::Integer { min: 100, max: 10_000_000 },
-        default: Default::Integer(8_000),
-        unit: "samples",
-        meaning: "Most training samples; if there are more, evenly spaced pieces are used.",
-        ..PLAIN
-    },
-    Key {
-        key: "max_steps",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(15),
-        unit: "steps",
-        meaning: "Most steps on pieces of each length, in each of two rounds.",
-        ..PLAIN
-    },
+    Key::new("functions", Value::Integer { min: 2, max: 30 }, Default::Integer(8))
+        .meaning("Eigenfunctions along position and along velocity; their products are the basis."),
+    Key::new("margin", Value::Float { min: 1.05, max: 10.0 }, Default::Float(1.4))
+        .meaning("Half width of the box over the farthest state visited in training.")
+        .source("Solin, Särkkä 2020: the kernel is distorted near the edge"),
+    Key::new("dry_friction", Value::Boolean, Default::Boolean(true)).meaning(
+        "Whether dry friction, whose size is learned, is added to the process, which is \
+                smooth.",
+    ),
+    Key::new("samples", Value::Integer { min: 100, max: 10_000_000 }, Default::Integer(8_000))
+        .unit("samples")
+        .meaning("Most training samples; if there are more, evenly spaced pieces are used."),
+    Key::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(15))
+        .unit("steps")
+        .meaning("Most steps on pieces of each length, in each of two rounds."),
 ];
 
 /// The learner. Ranges and defaults are stated in the registry's fields.

@@ -32,63 +32,27 @@ pub const ENTRY: Entry = Entry {
     restore: |stored| restored::<Network>(ID, stored),
 };
 
-const PLAIN: Key =
-    Key { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 const FIELDS: &[Key] = &[
-    Key {
-        key: "hidden_units",
-        kind: Value::Integer { min: 1, max: 200 },
-        default: Default::Integer(8),
-        unit: "units",
-        meaning: "Units of the hidden layer.",
-        ..PLAIN
-    },
-    Key {
-        key: "dry_friction",
-        kind: Value::Boolean,
-        default: Default::Boolean(true),
-        meaning: "Whether dry friction, whose size is learned, is added to the network, which is smooth.",
-        ..PLAIN
-    },
-    Key {
-        key: "weight_decay",
-        kind: Value::Float { min: 1e-9, max: 1e9 },
-        default: Default::Float(0.1),
-        meaning: "One over the prior variance of a weight, inputs and torque scaled to spread 1.",
-        ..PLAIN
-    },
-    Key {
-        key: "samples",
-        kind: Value::Integer { min: 100, max: 10_000_000 },
-        default: Default::Integer(8_000),
-        unit: "samples",
-        meaning: "Most training samples; if there are more, evenly spaced pieces are used.",
-        ..PLAIN
-    },
-    Key {
-        key: "restarts",
-        kind: Value::Integer { min: 1, max: 1000 },
-        default: Default::Integer(4),
-        meaning: "Networks that are pretrained, each from weights of its own; the best is trained on.",
-        ..PLAIN
-    },
-    Key {
-        key: "pretraining_steps",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(40),
-        unit: "steps",
-        meaning: "Most steps of matching accelerations before any trajectory is run.",
-        ..PLAIN
-    },
-    Key {
-        key: "max_steps",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(40),
-        unit: "steps",
-        meaning: "Most steps on pieces of each length.",
-        ..PLAIN
-    },
+    Key::new("hidden_units", Value::Integer { min: 1, max: 200 }, Default::Integer(8))
+        .unit("units")
+        .meaning("Units of the hidden layer."),
+    Key::new("dry_friction", Value::Boolean, Default::Boolean(true)).meaning(
+        "Whether dry friction, whose size is learned, is added to the network, which is \
+                smooth.",
+    ),
+    Key::new("weight_decay", Value::Float { min: 1e-9, max: 1e9 }, Default::Float(0.1))
+        .meaning("One over the prior variance of a weight, inputs and torque scaled to spread 1."),
+    Key::new("samples", Value::Integer { min: 100, max: 10_000_000 }, Default::Integer(8_000))
+        .unit("samples")
+        .meaning("Most training samples; if there are more, evenly spaced pieces are used."),
+    Key::new("restarts", Value::Integer { min: 1, max: 1000 }, Default::Integer(4))
+        .meaning("Networks that are pretrained, each from weights of its own; the best is trained on."),
+    Key::new("pretraining_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(40))
+        .unit("steps")
+        .meaning("Most steps of matching accelerations before any trajectory is run."),
+    Key::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(40))
+        .unit("steps")
+        .meaning("Most steps on pieces of each length."),
 ];
 
 /// The learner. Ranges and defaults are stated in the registry's fields.

@@ -54,15 +54,12 @@ pub struct SparseSettings {
     pub max_steps: u64,
 }
 
-const PLAIN: Field =
-    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 /// Keys shared by the sparse learners.
 pub(crate) const FIELDS: &[Field] = &[
-    Field {
-        key: "library",
-        kind: Value::Texts { at_least: 1, at_most: 10 },
-        default: Default::Texts(&[
+    Field::new(
+        "library",
+        Value::Texts { at_least: 1, at_most: 10 },
+        Default::Texts(&[
             "1",
             "theta",
             "theta_dot",
@@ -73,56 +70,30 @@ pub(crate) const FIELDS: &[Field] = &[
             "sin(theta)",
             "u",
         ]),
-        meaning: "Candidate terms of the acceleration; besides those of the default there is \"cos(theta)\". \"u\" is left \
-                  out where records have no input.",
-        ..PLAIN
-    },
-    Field {
-        key: "terms",
-        kind: Value::Texts { at_least: 0, at_most: 100 },
-        default: Default::Texts(&[]),
-        meaning: "Further candidates, as expressions of theta, theta_dot and u: \"sin(2*theta)\", \"theta*|theta_dot|\".",
-        ..PLAIN
-    },
-    Field {
-        key: "threshold",
-        kind: Value::Float { min: 0.0, max: 1.0 },
-        default: Default::Float(0.002),
-        unit: "share of the acceleration",
-        meaning: "Least contribution of a term; terms below it are removed repeatedly.",
-        source: "small, since the refit tells true terms from others by their errors",
-    },
-    Field {
-        key: "members",
-        kind: Value::Integer { min: 0, max: 10_000 },
-        default: Default::Integer(50),
-        meaning: "Number of resampled regressions for the inclusion probabilities; 0 for none.",
-        source: "Fasel et al. 2022",
-        ..PLAIN
-    },
-    Field {
-        key: "refit",
-        kind: Value::Boolean,
-        default: Default::Boolean(true),
-        meaning: "Whether weights are refitted to whole trajectories and superfluous terms taken out.",
-        ..PLAIN
-    },
-    Field {
-        key: "refit_samples",
-        kind: Value::Integer { min: 100, max: 10_000_000 },
-        default: Default::Integer(20_000),
-        unit: "samples",
-        meaning: "Most training samples of a refit; if there are more, evenly spaced pieces are used.",
-        ..PLAIN
-    },
-    Field {
-        key: "max_steps",
-        kind: Value::Integer { min: 1, max: 1_000_000 },
-        default: Default::Integer(40),
-        unit: "steps",
-        meaning: "Most steps of each refit.",
-        ..PLAIN
-    },
+    )
+    .meaning(
+        "Candidate terms of the acceleration; besides those of the default there is \
+                \"cos(theta)\". \"u\" is left out where records have no input.",
+    ),
+    Field::new("terms", Value::Texts { at_least: 0, at_most: 100 }, Default::Texts(&[])).meaning(
+        "Further candidates, as expressions of theta, theta_dot and u: \"sin(2*theta)\", \
+                \"theta*|theta_dot|\".",
+    ),
+    Field::new("threshold", Value::Float { min: 0.0, max: 1.0 }, Default::Float(0.002))
+        .unit("share of the acceleration")
+        .meaning("Least contribution of a term; terms below it are removed repeatedly.")
+        .source("small, since the refit tells true terms from others by their errors"),
+    Field::new("members", Value::Integer { min: 0, max: 10_000 }, Default::Integer(50))
+        .meaning("Number of resampled regressions for the inclusion probabilities; 0 for none.")
+        .source("Fasel et al. 2022"),
+    Field::new("refit", Value::Boolean, Default::Boolean(true))
+        .meaning("Whether weights are refitted to whole trajectories and superfluous terms taken out."),
+    Field::new("refit_samples", Value::Integer { min: 100, max: 10_000_000 }, Default::Integer(20_000))
+        .unit("samples")
+        .meaning("Most training samples of a refit; if there are more, evenly spaced pieces are used."),
+    Field::new("max_steps", Value::Integer { min: 1, max: 1_000_000 }, Default::Integer(40))
+        .unit("steps")
+        .meaning("Most steps of each refit."),
 ];
 
 impl SparseSettings {

@@ -1,6 +1,7 @@
 //! Errors of commands, and their exit codes.
 
 mod kept;
+mod kind;
 mod launch;
 mod learn;
 mod new;
@@ -43,7 +44,7 @@ pub(crate) enum TrainerError {
     #[error("{file}: cannot be read: {problem}; expected a TOML file, for example configs/pinn.toml")]
     Config { file: String, problem: String },
     #[error(transparent)]
-    Settings(#[from] SettingsError),
+    Settings(SettingsError),
     #[error(
         "{origin}: this is a configuration for the task \"{task}\", which `trainer {file}` runs; `trainer {wanted}` needs one \
          for the task \"{wanted}\", for example {example}"

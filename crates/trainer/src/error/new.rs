@@ -10,13 +10,15 @@ pub(crate) enum NewError {
          `echo-state`, and not a reserved word of Rust"
     )]
     Name { name: String },
-    #[error("there is a learner `{name}` already, or a file of its name; choose another name")]
-    Taken { name: String },
+    #[error("there is {what} `{name}` already, or a file of its name; choose another name")]
+    Taken { what: &'static str, name: String },
     #[error(
-        "{folder} is not in a checkout of Ringdown, to which a new estimator is added; change into one, or \
+        "{folder} is not in a checkout of Ringdown, to which the skeleton is added; change into one, or \
          name it with --workspace DIR"
     )]
     NoCheckout { folder: String },
+    #[error("{folder}: cannot be created: {reason}")]
+    NoFolder { folder: String, reason: String },
     #[error("{file}: cannot be read: {reason}")]
     Unreadable { file: String, reason: String },
     #[error(

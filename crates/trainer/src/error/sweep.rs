@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(crate) enum SweepCommandError {
     #[error(transparent)]
-    Plan(#[from] SweepError),
+    Plan(SweepError),
     #[error("combination {number}{overrides}: {source}")]
     Record { number: usize, overrides: String, source: RecordError },
     #[error(transparent)]

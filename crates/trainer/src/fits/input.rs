@@ -1,7 +1,6 @@
 //! Input of an experiment's fits, read from the file that its configuration names.
 
 use crate::error::TrainerError;
-use estimator::Uncertainty;
 use experiment::{DataSettings, Experiment};
 use record::{RecordError, read_file};
 use std::path::Path;
@@ -13,15 +12,6 @@ pub(crate) fn read(experiment: &Experiment) -> Result<Input, TrainerError> {
     let (record, source) =
         read_file(Path::new(&data.path), &data.read_options()).map_err(|error| absent(error, data))?;
     Ok(Input::of(record, source, data.clock, &experiment.envelope)?)
-}
-
-/// Scales a method's stated error, which assumes even scatter of ln A, to the scatter of this record.
-pub(crate) fn scaled(input: &Input, stated: Option<Uncertainty>, decay_rate: f64) -> Option<Uncertainty> {
-    let factor = input.oracle.scatter_factor;
-    stated.map(|known| Uncertainty {
-        std_error: factor * known.std_error,
-        interval_95: known.interval_95.map(|bound| decay_rate + factor * (bound - decay_rate)),
-    })
 }
 
 /// Converts a record's error; if the file is missing, the error includes the source that the configuration

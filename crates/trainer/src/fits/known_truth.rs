@@ -15,34 +15,20 @@ use settings::{Default, Field, Kind, Resolved, Section};
 use simulator::Plan;
 use std::path::{Path, PathBuf};
 
-const FIELD: Field =
-    Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 const POSITIVE: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 
 /// Keys of the file.
 const TRUTH: Section<'static> = Section {
     name: "",
     fields: &[
-        Field { key: "record", default: Default::Required, meaning: "Digest of the record file.", ..FIELD },
-        Field {
-            key: "simulation",
-            kind: Kind::Path,
-            meaning: "The configuration that `trainer simulate` made the record with.",
-            ..FIELD
-        },
-        Field {
-            key: "natural_frequency_rad_s",
-            kind: POSITIVE,
-            unit: "rad/s",
-            meaning: "Undamped angular frequency.",
-            ..FIELD
-        },
-        Field {
-            key: "damping_ratio",
-            kind: POSITIVE,
-            meaning: "Damping ratio of a decay that is exponential.",
-            ..FIELD
-        },
+        Field::new("record", Kind::Text, Default::Required).meaning("Digest of the record file."),
+        Field::new("simulation", Kind::Path, Default::Absent)
+            .meaning("The configuration that `trainer simulate` made the record with."),
+        Field::new("natural_frequency_rad_s", POSITIVE, Default::Absent)
+            .unit("rad/s")
+            .meaning("Undamped angular frequency."),
+        Field::new("damping_ratio", POSITIVE, Default::Absent)
+            .meaning("Damping ratio of a decay that is exponential."),
     ],
 };
 

@@ -3,17 +3,17 @@
 use crate::error::TrainerError;
 use envelope::Envelope;
 use estimator::{
-    Ablation, Cancel, Checkpoints, Entry, Estimand, Estimate, Estimator, FitContext, Observer, Prediction,
-    Reached, Silent, Stop, Tag, Uncertainty,
+    Ablation, Cancel, Checkpoints, Entry, Estimand, Estimate, Estimator, FitContext, Observer, Silent, Tag,
 };
 use experiment::Single;
-use oracle::classical::{self, CLASSICAL, ClassicalFit, ClassicalRoute};
+use oracle::classical::{self, CLASSICAL, ClassicalRoute};
 use registry::ESTIMATORS;
 use results::Family;
 use seed::Seed;
 use settings::{Document, Resolved, Section, SettingsError};
 use std::sync::Arc;
 use studies::StudiedMethod;
+use workflow::estimate::of_line;
 
 /// Method that estimates a decay rate.
 pub(crate) enum Method {
@@ -226,7 +226,7 @@ impl Method {
                     seed,
                     source,
                 })?;
-                described(envelope, fit, request.query_times)
+                of_line(envelope, fit, request.query_times)
             }
             Self::Learned(entry, estimator) => {
                 let mut context = FitContext::new(branch, request.max_steps, observer, request.cancel)
@@ -246,33 +246,5 @@ impl Method {
         } else {
             Err(TrainerError::NotFinite { estimator: self.id(), seed })
         }
-    }
-}
-
-/// Converts a classical method's line into an estimate.
-fn described(envelope: &Envelope, fit: ClassicalFit, query_times: &[f64]) -> Estimate {
-    let times = envelope.times_s();
-    let degrees = times.len() as f64 - 2.0;
-    let predictions = fit.predictions(envelope, query_times).into_iter();
-    let predictions = predictions.map(|line| Prediction::new(line.log_amplitude, line.std_error)).collect();
-    let reached = match fit.reached {
-        classical::Reached::Converged => Reached::Converged,
-        classical::Reached::BudgetSpent => Reached::BudgetSpent,
-        classical::Reached::Stalled => Reached::Stalled,
-    };
-    Estimate {
-        decay_rate: fit.decay_rate,
-        log_amplitude: fit.log_amplitude,
-        uncertainty: fit
-            .std_error
-            .and_then(|std_error| Uncertainty::students_t(fit.decay_rate, std_error, degrees)),
-        stop: Stop { reached, because: fit.because },
-        steps: fit.steps,
-        // Intercept and slope.
-        parameters: 2,
-        fitted_log_amplitudes: times.iter().map(|t| fit.log_amplitude - fit.decay_rate * t).collect(),
-        predictions,
-        equation: None,
-        model: None,
     }
 }

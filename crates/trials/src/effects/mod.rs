@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn banks_hide_what_can_be_seen_there() {
         let driven = hidden_in(Bank::Driven);
-        assert_eq!(driven.iter().position(|effect| !effect.needs_input), Some(9));
+        assert_eq!(driven.iter().position(|effect| !effect.needs_input), Some(10));
         assert!(
             REGISTRY
                 .iter()

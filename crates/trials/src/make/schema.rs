@@ -2,10 +2,6 @@
 
 use settings::{Default, Field, Kind, Section};
 
-/// Text field without unit and source; other fields refine it by struct update.
-const PLAIN: Field =
-    Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 /// All sections of a trial configuration.
 pub(crate) const SECTIONS: &[Section<'static>] = &[
     Section { name: "", fields: TOP },
@@ -17,37 +13,17 @@ pub(crate) const SECTIONS: &[Section<'static>] = &[
 ];
 
 const TOP: &[Field] = &[
-    Field {
-        key: "task",
-        kind: Kind::Choice(&["trials"]),
-        default: Default::Text("trials"),
-        meaning: "What the configuration is for.",
-        ..PLAIN
-    },
-    Field {
-        key: "name",
-        default: Default::Text("trials"),
-        meaning: "Start of the run folder's name.",
-        ..PLAIN
-    },
-    Field {
-        key: "seed",
-        kind: Kind::Integer { min: 0, max: i64::MAX },
-        default: Default::Integer(0),
-        meaning: "Root of every random draw; a case draws from a branch of its own.",
-        ..PLAIN
-    },
+    Field::new("task", Kind::Choice(&["trials"]), Default::Text("trials"))
+        .meaning("What the configuration is for."),
+    Field::new("name", Kind::Text, Default::Text("trials")).meaning("Start of the run folder's name."),
+    Field::new("seed", Kind::Integer { min: 0, max: i64::MAX }, Default::Integer(0))
+        .meaning("Root of every random draw; a case draws from a branch of its own."),
 ];
 
 const fn count(key: &'static str, meaning: &'static str) -> Field {
-    Field {
-        key,
-        kind: Kind::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(0),
-        unit: "cases",
-        meaning,
-        source: "",
-    }
+    Field::new(key, Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(0))
+        .unit("cases")
+        .meaning(meaning)
 }
 
 const TRIALS: &[Field] = &[
@@ -67,130 +43,70 @@ const TRIALS: &[Field] = &[
     count("engine_cases", "Cases of a physics engine, at most; those of the folder, in order."),
     count("composite", "Cases with two to six effects of very different size beside unlisted smooth laws."),
     count("rigs_cases", "Rigs of another program, at most; those of the folder, in order."),
-    Field {
-        key: "rigs",
-        kind: Kind::Path,
-        meaning: "Folder with rigs and their truths, as experiments/rigs makes it.",
-        ..PLAIN
-    },
-    Field {
-        key: "measured",
-        kind: Kind::Path,
-        meaning: "Folder with residual-*.csv (columns time_s and residual, in rad) of measured records.",
-        ..PLAIN
-    },
-    Field {
-        key: "engine",
-        kind: Kind::Path,
-        meaning: "Folder with the records of a physics engine, as experiments/physics-engine makes it.",
-        ..PLAIN
-    },
-    Field {
-        key: "detectabilities",
-        kind: Kind::Floats { min: 0.1, max: 1000.0, at_least: 1, at_most: 20 },
-        default: Default::Floats(&[3.0, 6.0, 12.0, 25.0, 50.0, 100.0]),
-        unit: "noise units",
-        meaning: "Sizes of hidden effects: root of the sum of squares of what no recalibration absorbs.",
-        ..PLAIN
-    },
+    Field::new("rigs", Kind::Path, Default::Absent)
+        .meaning("Folder with rigs and their truths, as experiments/rigs makes it."),
+    Field::new("measured", Kind::Path, Default::Absent).meaning(
+        "Folder with residual-*.csv (columns time_s and residual, in rad) of measured \
+                records.",
+    ),
+    Field::new("engine", Kind::Path, Default::Absent)
+        .meaning("Folder with the records of a physics engine, as experiments/physics-engine makes it."),
+    Field::new(
+        "detectabilities",
+        Kind::Floats { min: 0.1, max: 1000.0, at_least: 1, at_most: 20 },
+        Default::Floats(&[3.0, 6.0, 12.0, 25.0, 50.0, 100.0]),
+    )
+    .unit("noise units")
+    .meaning(
+        "Sizes of hidden effects: root of the sum of squares of what no recalibration \
+                absorbs.",
+    ),
 ];
 
 const RECORD: &[Field] = &[
-    Field {
-        key: "rate_hz",
-        kind: Kind::Float { min: 20.0, max: 100_000.0 },
-        default: Default::Float(260.0),
-        unit: "Hz",
-        meaning: "Samples per second of the sensor's own clock.",
-        source: "the paper's rig",
-    },
-    Field {
-        key: "seconds",
-        kind: Kind::Float { min: 1.0, max: 10_000.0 },
-        default: Default::Float(25.0),
-        unit: "s",
-        meaning: "Length of a record.",
-        source: "the paper's rig",
-    },
-    Field {
-        key: "smallest_release_deg",
-        kind: Kind::Float { min: 1.0, max: 120.0 },
-        default: Default::Float(20.0),
-        unit: "deg",
-        meaning: "Smallest release, or largest swing of a driven record, from the rest angle.",
-        ..PLAIN
-    },
-    Field {
-        key: "largest_release_deg",
-        kind: Kind::Float { min: 1.0, max: 120.0 },
-        default: Default::Float(60.0),
-        unit: "deg",
-        meaning: "Largest release, or largest swing of a driven record, from the rest angle.",
-        ..PLAIN
-    },
+    Field::new("rate_hz", Kind::Float { min: 20.0, max: 100_000.0 }, Default::Float(260.0))
+        .unit("Hz")
+        .meaning("Samples per second of the sensor's own clock.")
+        .source("the paper's rig"),
+    Field::new("seconds", Kind::Float { min: 1.0, max: 10_000.0 }, Default::Float(25.0))
+        .unit("s")
+        .meaning("Length of a record.")
+        .source("the paper's rig"),
+    Field::new("smallest_release_deg", Kind::Float { min: 1.0, max: 120.0 }, Default::Float(20.0))
+        .unit("deg")
+        .meaning("Smallest release, or largest swing of a driven record, from the rest angle."),
+    Field::new("largest_release_deg", Kind::Float { min: 1.0, max: 120.0 }, Default::Float(60.0))
+        .unit("deg")
+        .meaning("Largest release, or largest swing of a driven record, from the rest angle."),
 ];
 
 const SYSTEM: &[Field] = &[
-    Field {
-        key: "lowest_frequency_hz",
-        kind: Kind::Float { min: 0.1, max: 100.0 },
-        default: Default::Float(1.0),
-        unit: "Hz",
-        meaning: "Lowest natural frequency; drawn uniformly in its logarithm.",
-        ..PLAIN
-    },
-    Field {
-        key: "highest_frequency_hz",
-        kind: Kind::Float { min: 0.1, max: 100.0 },
-        default: Default::Float(8.0),
-        unit: "Hz",
-        meaning: "Highest natural frequency.",
-        ..PLAIN
-    },
-    Field {
-        key: "smallest_damping_ratio",
-        kind: Kind::Float { min: 1e-4, max: 0.5 },
-        default: Default::Float(0.002),
-        meaning: "Smallest damping ratio; drawn uniformly in its logarithm.",
-        ..PLAIN
-    },
-    Field {
-        key: "largest_damping_ratio",
-        kind: Kind::Float { min: 1e-4, max: 0.5 },
-        default: Default::Float(0.03),
-        meaning: "Largest damping ratio.",
-        ..PLAIN
-    },
+    Field::new("lowest_frequency_hz", Kind::Float { min: 0.1, max: 100.0 }, Default::Float(1.0))
+        .unit("Hz")
+        .meaning("Lowest natural frequency; drawn uniformly in its logarithm."),
+    Field::new("highest_frequency_hz", Kind::Float { min: 0.1, max: 100.0 }, Default::Float(8.0))
+        .unit("Hz")
+        .meaning("Highest natural frequency."),
+    Field::new("smallest_damping_ratio", Kind::Float { min: 1e-4, max: 0.5 }, Default::Float(0.002))
+        .meaning("Smallest damping ratio; drawn uniformly in its logarithm."),
+    Field::new("largest_damping_ratio", Kind::Float { min: 1e-4, max: 0.5 }, Default::Float(0.03))
+        .meaning("Largest damping ratio."),
 ];
 
 const SENSOR: &[Field] = &[
-    Field {
-        key: "smallest_noise",
-        kind: Kind::Float { min: 1e-7, max: 0.1 },
-        default: Default::Float(2e-4),
-        unit: "rad",
-        meaning: "Smallest standard deviation of the sensor's white noise; drawn uniformly in its logarithm.",
-        ..PLAIN
-    },
-    Field {
-        key: "largest_noise",
-        kind: Kind::Float { min: 1e-7, max: 0.1 },
-        default: Default::Float(1e-3),
-        unit: "rad",
-        meaning: "Largest standard deviation of the sensor's white noise.",
-        ..PLAIN
-    },
+    Field::new("smallest_noise", Kind::Float { min: 1e-7, max: 0.1 }, Default::Float(2e-4))
+        .unit("rad")
+        .meaning(
+            "Smallest standard deviation of the sensor's white noise; drawn uniformly in its \
+                logarithm.",
+        ),
+    Field::new("largest_noise", Kind::Float { min: 1e-7, max: 0.1 }, Default::Float(1e-3))
+        .unit("rad")
+        .meaning("Largest standard deviation of the sensor's white noise."),
 ];
 
 const fn share(key: &'static str, meaning: &'static str) -> Field {
-    Field {
-        key,
-        kind: Kind::Float { min: 0.0, max: 1.0 },
-        default: Default::Absent,
-        unit: "",
-        meaning,
-        source: "",
-    }
+    Field::new(key, Kind::Float { min: 0.0, max: 1.0 }, Default::Absent).meaning(meaning)
 }
 
 const GATE: &[Field] = &[

@@ -1,6 +1,7 @@
 //! Search for the size of an effect with a wanted detectability.
 
 use super::error::TrialError;
+use dynamics::DynamicsError;
 
 /// Relative difference from the wanted detectability that is accepted.
 pub(crate) const CLOSE: f64 = 0.01;
@@ -18,7 +19,7 @@ pub(crate) struct Sized {
 
 /// Finds the size at which `detectability` is as wanted, by the secant rule on the logarithms of both; once
 /// there is a bracket, bisection keeps the search within it. `None` if no size up to `most` is large enough,
-/// or no size comes close.
+/// no size comes close, or the motion diverges at one.
 pub(crate) fn solve(
     wanted: f64,
     guess: f64,
@@ -30,7 +31,10 @@ pub(crate) fn solve(
     let (mut below, mut above): (Option<f64>, Option<f64>) = (None, None);
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..ROUNDS {
-        let found = detectability(at.exp())?;
+        let found = match detectability(at.exp()) {
+            Err(TrialError::Dynamics(DynamicsError::Diverged { .. })) => return Ok(None),
+            found => found?,
+        };
         if (found / wanted - 1.0).abs() <= CLOSE {
             return Ok(Some(Sized { size: at.exp(), detectability: found }));
         }
@@ -65,7 +69,7 @@ pub(crate) fn solve(
 
 #[cfg(test)]
 mod tests {
-    use super::{CLOSE, solve};
+    use super::{CLOSE, DynamicsError, solve};
 
     #[test]
     fn powers_steps_and_plateaus_are_solved() {
@@ -84,5 +88,7 @@ mod tests {
     #[test]
     fn what_is_out_of_reach_is_said_to_be() {
         assert_eq!(solve(60.0, 1e-3, 10.0, |size| Ok(50.0 * size / (size + 1.0))).unwrap(), None);
+        let diverges = |_: f64| Err(DynamicsError::Diverged { time_s: 1.0, position: 1e6 }.into());
+        assert_eq!(solve(60.0, 1e-3, 10.0, diverges).unwrap(), None);
     }
 }

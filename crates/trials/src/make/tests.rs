@@ -362,7 +362,7 @@ fn cases_of_a_physics_engine_are_written_like_every_other() {
 }
 
 #[test]
-fn configurations_as_shipped_hide_everything_at_every_size() {
+fn the_shipped_configuration_hides_everything_at_every_size() {
     let plan = TrialPlan::resolve(&shipped("trials.toml")).unwrap();
     assert!(plan.len() >= 5000, "{}", plan.len());
     assert_eq!(plan.detectabilities, [3.0, 6.0, 12.0, 25.0, 50.0, 100.0]);
@@ -374,8 +374,8 @@ fn configurations_as_shipped_hide_everything_at_every_size() {
         let whole = TrialPlan::variety(bank) * plan.detectabilities.len();
         let plain = [Bank::None, Bank::Calibration, Bank::Engine].contains(&bank);
         assert!(
-            plain || count % whole == 0,
-            "configs/trials.toml: {count} cases of {bank:?} are no multiple of {whole}, which hides every effect at every size"
+            plain || count >= whole,
+            "configs/trials.toml: {bank:?} has {count} cases; {whole} are needed to hide every effect at every size"
         );
     }
     let quick = TrialPlan::resolve(&shipped("trials-quick.toml")).unwrap();

@@ -1,4 +1,9 @@
 //! Scoring of answers against opened truths, by pure functions.
+//!
+//! Correctness has one definition (`judgment`): the test of stated confidence, the counts in `cases.csv` and
+//! the list of failures all use it. Classes are the scorer's own. Which effects it treats as alike does not follow from
+//! which ones the diagnosis treats as alike, and a class to which an unlisted law belongs by its mechanism counts
+//! neither for nor against an answer.
 
 pub(crate) mod accuracy;
 mod bars;

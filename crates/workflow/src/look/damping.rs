@@ -1,46 +1,104 @@
-//! Change of the damping along a decay.
+//! Changes of the damping and of the frequency along a decay.
 
 use envelope::Envelope;
 use report::format::with_uncertainty;
 
 /// Fewest peaks of a part of a decay.
 const FEWEST: usize = 5;
-/// Difference of the damping ratios of two parts, in standard errors and as a part of the smaller one, from which one
-/// number does not describe both.
-const APART: (f64, f64) = (6.0, 0.4);
+/// Difference of two parts, in standard errors, from which one number does not describe both.
+const APART: f64 = 6.0;
+/// Difference of their damping ratios that it needs as well, as a part of the smaller one.
+const ANOTHER_DAMPING: f64 = 0.4;
+/// Difference of their frequencies that it needs as well, as a part of the first.
+const ANOTHER_FREQUENCY: f64 = 0.005;
 
-/// Returns a remark if the damping ratio of the last third of a decay differs from that of the first.
+/// Distance of the time between two turning points from a whole number of half periods, in these.
+const TURN: f64 = 0.25;
+
+/// Returns remarks if the damping ratio or the frequency in the last third of a decay differs from that in the first.
 #[must_use]
-pub fn changing(envelope: &Envelope) -> Option<String> {
+pub fn changing(envelope: &Envelope) -> Vec<String> {
     let third = envelope.len() / 3;
     if third < FEWEST {
-        return None;
+        return Vec::new();
     }
-    let (errors, part) = APART;
-    let [first, last] = [0, envelope.len() - third].map(|from| ratio(envelope, from, from + third));
-    let ((first, first_error), (last, last_error)) = (first?, last?);
-    let difference = (last - first).abs();
-    let is_far = difference > errors * first_error.hypot(last_error)
-        && difference > part * first.abs().min(last.abs());
-    is_far.then(|| {
+    let thirds = [0, envelope.len() - third].map(|from| part(envelope, from, from + third));
+    let [Some(first), Some(last)] = thirds else { return Vec::new() };
+    let damping = apart(ratio(&first), ratio(&last), ANOTHER_DAMPING).map(|[first, last]| {
         format!(
-            "the damping ratio changes along the decay, from {} in its first third to {} in its last: no single number \
-             describes it. Dry friction makes it rise and drag makes it fall; a diagnosis tells them apart",
-            with_uncertainty(first, first_error),
-            with_uncertainty(last, last_error)
+            "the damping ratio changes along the decay, from {first} in its first third to {last} in its last: no single number \
+             describes it. Dry friction makes it rise and drag makes it fall; a diagnosis tells them apart"
         )
-    })
+    });
+    let frequency = apart(frequency_hz(&first), frequency_hz(&last), ANOTHER_FREQUENCY).map(|[first, last]| {
+        format!(
+            "the frequency changes along the decay, from {first} Hz in its first third to {last} Hz in its last, as that of a \
+             wide swing does; a small swing has the last one or what lies beyond it. A diagnosis finds the restoring force"
+        )
+    });
+    damping.into_iter().chain(frequency).collect()
 }
 
-/// Returns the damping ratio of a part of a decay, with its standard error.
-fn ratio(envelope: &Envelope, from: usize, to: usize) -> Option<(f64, f64)> {
+/// Returns two numbers with their standard errors, as text, if they differ by more than [`APART`] of these and by more
+/// than a part of the smaller one.
+fn apart(first: Option<[f64; 2]>, last: Option<[f64; 2]>, part: f64) -> Option<[String; 2]> {
+    let ([first, first_error], [last, last_error]) = first.zip(last)?;
+    let difference = (last - first).abs();
+    let is_far =
+        difference > APART * first_error.hypot(last_error) && difference > part * first.abs().min(last.abs());
+    is_far.then(|| [with_uncertainty(first, first_error), with_uncertainty(last, last_error)])
+}
+
+/// Returns the peaks of a decay with numbers in a range, as a decay of its own.
+fn part(envelope: &Envelope, from: usize, to: usize) -> Option<Envelope> {
     let times = envelope.times_s().get(from..to)?.to_vec();
     let logarithms = envelope.log_amplitudes().get(from..to)?.to_vec();
     let errors = envelope.log_std_errors().and_then(|errors| errors.get(from..to)).map(<[f64]>::to_vec);
     let part = Envelope::new(times, logarithms, envelope.omega_rad_s()).ok()?.with_ratio(envelope.ratio());
-    let part = errors.into_iter().fold(part, Envelope::with_log_std_errors);
-    let fit = oracle::decay_rate(&part).ok()?;
-    Some((fit.zeta, fit.zeta_std_error))
+    Some(errors.into_iter().fold(part, Envelope::with_log_std_errors))
+}
+
+/// Returns the damping ratio of a decay with its standard error, which a decay that is not exponential does not enlarge:
+/// that is what is looked for.
+fn ratio(decay: &Envelope) -> Option<[f64; 2]> {
+    let fit = oracle::decay_rate(decay).ok()?;
+    let times = decay.times_s();
+    let start = times.first()?;
+    let values = times.iter().zip(decay.log_amplitudes());
+    let residuals: Vec<f64> =
+        values.map(|(time, value)| value - fit.log_amplitude_at(time - start)).collect();
+    let errors = decay.log_std_errors().map_or_else(|| vec![1.0; residuals.len()], <[f64]>::to_vec);
+    Some([fit.zeta, fit.zeta_std_error * noise_share(&residuals, &errors)])
+}
+
+/// Returns the part of the scatter of residuals that is noise, at most 1: that of their second differences, to which
+/// what changes slowly adds nothing.
+fn noise_share(residuals: &[f64], errors: &[f64]) -> f64 {
+    let squares: f64 = residuals.iter().zip(errors).map(|(residual, error)| (residual / error).powi(2)).sum();
+    let differences = residuals.windows(3).zip(errors.windows(3)).filter_map(|(values, errors)| {
+        let ([a, b, c], [ea, eb, ec]) = (values, errors) else { return None };
+        Some((a - 2.0 * b + c).powi(2) / (ea * ea + 4.0 * eb * eb + ec * ec))
+    });
+    let (sum, count) = differences.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    let share = (sum / count) / (squares / (residuals.len() as f64 - 2.0));
+    share.sqrt().min(1.0)
+}
+
+/// Returns the frequency of a decay's turning points in Hz, with its standard error, from the slope of their times
+/// against their numbers.
+fn frequency_hz(decay: &Envelope) -> Option<[f64; 2]> {
+    let rough = std::f64::consts::PI / decay.omega_rad_s();
+    // Amplitudes that were fitted to windows do not stand at turning points.
+    let is_turn = |pair: &[f64]| {
+        let count = pair.iter().rev().copied().reduce(|last, first| last - first).map(|step| step / rough);
+        count.is_some_and(|count| count.round() > 0.0 && (count - count.round()).abs() < TURN)
+    };
+    if !decay.times_s().windows(2).all(is_turn) {
+        return None;
+    }
+    let half = identify::half_period(decay, rough)?;
+    let frequency = 0.5 / half.value;
+    Some([frequency, frequency * half.std_error / half.value])
 }
 
 #[cfg(test)]
@@ -58,8 +116,29 @@ mod tests {
 
     #[test]
     fn friction_and_drag_change_it_and_viscous_damping_does_not() {
-        assert_eq!(changing(&decay(|time| (-0.05 * time).exp())), None);
-        assert!(changing(&decay(|time| 1.0 - 0.02 * time)).is_some());
-        assert!(changing(&decay(|time| 1.0 / (1.0 + 0.1 * time))).is_some());
+        assert!(changing(&decay(|time| (-0.05 * time).exp())).is_empty());
+        // The last third of the second falls to a hundredth, steeper and steeper.
+        for amplitude in
+            [|time: f64| 1.0 - 0.02 * time, |time| 1.001 - time / 39.0, |time| 1.0 / (1.0 + 0.1 * time)]
+        {
+            let said = changing(&decay(amplitude));
+            assert!(said.len() == 1 && said[0].contains("damping ratio"), "{said:?}");
+        }
+    }
+
+    /// A pendulum of 75 degrees swings slower by a tenth than one of 5.
+    #[test]
+    fn a_wide_swing_changes_its_frequency() {
+        let mut time = 0.0_f64;
+        let amplitudes = (0..60).map(|at| 1.3 * (-0.04 * f64::from(at)).exp());
+        let (times, logarithms) = amplitudes
+            .map(|amplitude: f64| {
+                time += 0.5 * (1.0 + amplitude * amplitude / 16.0) * (1.0 + 1e-4 * (time * 7.0).sin());
+                (time, -0.08 * time)
+            })
+            .unzip();
+        let envelope = Envelope::new(times, logarithms, 2.0 * std::f64::consts::PI).unwrap();
+        let said = changing(&envelope);
+        assert!(said.iter().any(|said| said.contains("the frequency changes")), "{said:?}");
     }
 }

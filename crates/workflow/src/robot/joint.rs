@@ -4,7 +4,7 @@ use super::read::{LoadedRecording, RobotQuestion};
 use crate::error::WorkflowError;
 use crate::question::{Answer, Question};
 use crate::read::Given;
-use diagnosis::{DiagnosisError, Settings};
+use diagnosis::{DiagnosisError, Settings, Stage};
 use dynamics::tree::Acting;
 use dynamics::{
     Active, Coefficients, Coordinate, DynamicsError, Hold, KnownEffect, Nominal, NominalSimulator, System,
@@ -167,7 +167,7 @@ impl JointQuestion {
         &self,
         settings: &Settings,
         seed: u64,
-        goes_on: &(dyn Fn(&'static str) -> bool + Sync),
+        goes_on: &(dyn Fn(Stage) -> bool + Sync),
     ) -> Result<JointAnswer, WorkflowError> {
         let mut settings = settings.clone();
         settings.without.extend(NOT_OF_A_JOINT.map(str::to_owned));

@@ -11,7 +11,7 @@ mod result;
 pub use joint::{JointAnswer, JointQuestion};
 pub use read::{LoadedRecording, RobotOptions, RobotQuestion};
 
-use diagnosis::Settings;
+use diagnosis::{Settings, Stage};
 use rayon::prelude::*;
 use results::{FailedCase, JointsResult};
 use std::time::Instant;
@@ -44,7 +44,7 @@ impl RobotQuestion {
         &self,
         settings: &Settings,
         seed: u64,
-        goes_on: &(dyn Fn(&'static str) -> bool + Sync),
+        goes_on: &(dyn Fn(Stage) -> bool + Sync),
         done: &(dyn Fn(&JointFate) + Sync),
     ) -> RobotAnswer {
         let start = Instant::now();

@@ -1,4 +1,7 @@
 //! Second body coupled by a spring.
+//!
+//! A second body appears as a spectral line of its own, within what the samples can show. The search looks for a
+//! decaying line, since a steady one sees only 2/(rT) of a line that dies away at rate r within T.
 
 use super::{CandidateLaw, EvidenceClass, Lines, MainMode, Mode, Parameter};
 use crate::data::scales::Scales;

@@ -1,4 +1,7 @@
 //! Friction with a pre-sliding spring.
+//!
+//! Sets with a contact that hardly slides are kept, with its displacement at its bound: discarding them discarded the
+//! path to the sets that they lead to.
 
 use super::coulomb_friction::CoulombFriction;
 use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};

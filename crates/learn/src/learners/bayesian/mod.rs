@@ -39,43 +39,20 @@ pub const ENTRY: Entry = Entry {
     restore: |stored| restore(ID, stored),
 };
 
-const PLAIN: Field =
-    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 const FIELDS: &[Field] = &[
     LAW,
-    Field {
-        key: "warm_up",
-        kind: Value::Integer { min: 1, max: 1_000_000 },
-        default: Default::Integer(60),
-        unit: "draws",
-        meaning: "Draws in which the step is adapted; none is kept.",
-        ..PLAIN
-    },
-    Field {
-        key: "draws",
-        kind: Value::Integer { min: 10, max: 1_000_000 },
-        default: Default::Integer(240),
-        unit: "draws",
-        meaning: "Draws that are kept.",
-        ..PLAIN
-    },
-    Field {
-        key: "samples",
-        kind: Value::Integer { min: 100, max: 10_000_000 },
-        default: Default::Integer(3_000),
-        unit: "samples",
-        meaning: "Most training samples; if there are more, evenly spaced pieces are used.",
-        ..PLAIN
-    },
-    Field {
-        key: "max_steps",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(40),
-        unit: "steps",
-        meaning: "Most steps of the fit that the sampler begins at, on pieces of each length.",
-        ..PLAIN
-    },
+    Field::new("warm_up", Value::Integer { min: 1, max: 1_000_000 }, Default::Integer(60))
+        .unit("draws")
+        .meaning("Draws in which the step is adapted; none is kept."),
+    Field::new("draws", Value::Integer { min: 10, max: 1_000_000 }, Default::Integer(240))
+        .unit("draws")
+        .meaning("Draws that are kept."),
+    Field::new("samples", Value::Integer { min: 100, max: 10_000_000 }, Default::Integer(3_000))
+        .unit("samples")
+        .meaning("Most training samples; if there are more, evenly spaced pieces are used."),
+    Field::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(40))
+        .unit("steps")
+        .meaning("Most steps of the fit that the sampler begins at, on pieces of each length."),
 ];
 
 /// The learner. Ranges and defaults are stated in the registry's fields.

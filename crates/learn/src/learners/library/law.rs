@@ -8,22 +8,15 @@ use serde_json::json;
 use settings::{Default, Field, Kind};
 
 /// Setting for the terms of a law that is stated rather than searched.
-pub(crate) const LAW: Field = Field {
-    key: "library",
-    kind: Kind::Texts { at_least: 1, at_most: 10 },
-    default: Default::Texts(&[
-        "theta",
-        "theta_dot",
-        "sign(theta_dot)",
-        "theta_dot*|theta_dot|",
-        "theta^3",
-        "u",
-    ]),
-    meaning: "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is left out where records \
-              have no input.",
-    unit: "",
-    source: "",
-};
+pub(crate) const LAW: Field = Field::new(
+    "library",
+    Kind::Texts { at_least: 1, at_most: 10 },
+    Default::Texts(&["theta", "theta_dot", "sign(theta_dot)", "theta_dot*|theta_dot|", "theta^3", "u"]),
+)
+.meaning(
+    "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is \
+                left out where records have no input.",
+);
 
 /// Builds the model of a law from its weights and their optional standard errors.
 #[must_use]

@@ -42,50 +42,22 @@ pub const ENTRY: Entry = Entry {
     restore: |stored| restore(ID, stored),
 };
 
-const PLAIN: Field =
-    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 const FIELDS: &[Field] = &[
     LAW,
-    Field {
-        key: "window_periods",
-        kind: Value::Float { min: 0.1, max: 100.0 },
-        default: Default::Float(1.0),
-        unit: "periods",
-        meaning: "Length of the window that one network describes.",
-        ..PLAIN
-    },
-    Field {
-        key: "frequencies",
-        kind: Value::Integer { min: 1, max: 64 },
-        default: Default::Integer(8),
-        meaning: "Fourier features: this many frequencies, half a cycle of the window apart.",
-        source: "Tancik et al. 2020",
-        ..PLAIN
-    },
-    Field {
-        key: "hidden_units",
-        kind: Value::Integer { min: 0, max: 512 },
-        default: Default::Integer(4),
-        meaning: "Hidden units of each network.",
-        ..PLAIN
-    },
-    Field {
-        key: "samples",
-        kind: Value::Integer { min: 100, max: 10_000_000 },
-        default: Default::Integer(6_000),
-        unit: "samples",
-        meaning: "Most training samples; if there are more, evenly spaced windows are used.",
-        ..PLAIN
-    },
-    Field {
-        key: "max_steps",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(20),
-        unit: "steps",
-        meaning: "Most steps at each weight of the physics.",
-        ..PLAIN
-    },
+    Field::new("window_periods", Value::Float { min: 0.1, max: 100.0 }, Default::Float(1.0))
+        .unit("periods")
+        .meaning("Length of the window that one network describes."),
+    Field::new("frequencies", Value::Integer { min: 1, max: 64 }, Default::Integer(8))
+        .meaning("Fourier features: this many frequencies, half a cycle of the window apart.")
+        .source("Tancik et al. 2020"),
+    Field::new("hidden_units", Value::Integer { min: 0, max: 512 }, Default::Integer(4))
+        .meaning("Hidden units of each network."),
+    Field::new("samples", Value::Integer { min: 100, max: 10_000_000 }, Default::Integer(6_000))
+        .unit("samples")
+        .meaning("Most training samples; if there are more, evenly spaced windows are used."),
+    Field::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(20))
+        .unit("steps")
+        .meaning("Most steps at each weight of the physics."),
 ];
 
 /// The learner. Ranges and defaults are stated in the registry's fields.

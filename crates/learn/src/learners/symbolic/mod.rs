@@ -45,62 +45,26 @@ pub const ENTRY: Entry = Entry {
     restore: |stored| restored(stored),
 };
 
-const PLAIN: Key =
-    Key { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
-
 const FIELDS: &[Key] = &[
-    Key {
-        key: "population",
-        kind: Value::Integer { min: 2, max: 100_000 },
-        default: Default::Integer(120),
-        meaning: "Sums of expressions in a generation.",
-        ..PLAIN
-    },
-    Key {
-        key: "generations",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(60),
-        meaning: "Generations.",
-        ..PLAIN
-    },
-    Key {
-        key: "parsimony",
-        kind: Value::Float { min: 0.0, max: 10.0 },
-        default: Default::Float(0.02),
-        meaning: "Share by which one more node must lower the error to be preferred in breeding.",
-        ..PLAIN
-    },
-    Key {
-        key: "most_parts",
-        kind: Value::Integer { min: 1, max: 64 },
-        default: Default::Integer(7),
-        meaning: "Most expressions of a sum.",
-        ..PLAIN
-    },
-    Key {
-        key: "most_nodes",
-        kind: Value::Integer { min: 1, max: 64 },
-        default: Default::Integer(7),
-        meaning: "Most nodes of an expression.",
-        ..PLAIN
-    },
-    Key {
-        key: "samples",
-        kind: Value::Integer { min: 100, max: 10_000_000 },
-        default: Default::Integer(6_000),
-        unit: "samples",
-        meaning: "Most training samples of the refit to trajectories; if there are more, evenly spaced \
-                  pieces are used.",
-        ..PLAIN
-    },
-    Key {
-        key: "max_steps",
-        kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(30),
-        unit: "steps",
-        meaning: "Most steps of the refit on pieces of each length.",
-        ..PLAIN
-    },
+    Key::new("population", Value::Integer { min: 2, max: 100_000 }, Default::Integer(120))
+        .meaning("Sums of expressions in a generation."),
+    Key::new("generations", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(60))
+        .meaning("Generations."),
+    Key::new("parsimony", Value::Float { min: 0.0, max: 10.0 }, Default::Float(0.02))
+        .meaning("Share by which one more node must lower the error to be preferred in breeding."),
+    Key::new("most_parts", Value::Integer { min: 1, max: 64 }, Default::Integer(7))
+        .meaning("Most expressions of a sum."),
+    Key::new("most_nodes", Value::Integer { min: 1, max: 64 }, Default::Integer(7))
+        .meaning("Most nodes of an expression."),
+    Key::new("samples", Value::Integer { min: 100, max: 10_000_000 }, Default::Integer(6_000))
+        .unit("samples")
+        .meaning(
+            "Most training samples of the refit to trajectories; if there are more, evenly spaced \
+                pieces are used.",
+        ),
+    Key::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(30))
+        .unit("steps")
+        .meaning("Most steps of the refit on pieces of each length."),
 ];
 
 /// The learner. Ranges and defaults are stated in the registry's fields.

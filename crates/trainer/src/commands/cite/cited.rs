@@ -1,137 +1,57 @@
-//! Map from the short citations of methods and effects to the entries of `literature.bib`.
+//! Entries of `literature.bib` that the short citations of methods and effects mean.
 
-/// Short citations as the registries write them, and the keys of the cited works.
-pub(super) const CITED: &[(&str, &[&str])] = &[
-    ("Aitken, Proc. Royal Soc. Edinburgh 55 (1935) 42", &["aitken1935"]),
-    ("Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, equation 9", &["armstrong1994"]),
-    ("Baker, Blackburn, The Pendulum, Oxford 2005, chapter 3", &["baker2005"]),
-    ("Bates, Watts, Technometrics 23 (1981) 179: the stopping rule", &["bates1981"]),
-    (
-        "Bittencourt, Gunnarsson, Journal of Dynamic Systems, Measurement, and Control 134 (2012) 051013",
-        &["bittencourt2012"],
-    ),
-    ("Björck, BIT 7 (1967) 1", &["bjorck1967"]),
-    ("Björck, Numerical Methods for Least Squares Problems (SIAM 1996), section 2.2", &["bjorck1996"]),
-    ("Boninsegna, Nüske, Clementi, Journal of Chemical Physics 148 (2018) 241723", &["boninsegna2018"]),
-    ("Bortz, Messenger, Dukic, Bulletin of Mathematical Biology 85 (2023) 110", &["bortz2023"]),
-    ("Branch, Coleman, Li, SIAM J. Sci. Comput. 21 (1999) 1", &["branch1999"]),
-    (
-        "Breiman, Friedman, Olshen, Stone, Classification and Regression Trees (Wadsworth 1984)",
-        &["breiman1984"],
-    ),
-    ("Brunton, Proctor, Kutz, PNAS 113 (2016) 3932-3937", &["brunton2016"]),
-    ("Chan, ACM Trans. Math. Software 8 (1982) 72", &["chan1982"]),
-    ("Chan, Golub, LeVeque, The American Statistician 37 (1983) 242", &["chan1983"]),
-    (
-        "Chen, Rubanova, Bettencourt, Duvenaud, Advances in Neural Information Processing Systems 31 (2018) 6571-6583",
-        &["chen2018"],
-    ),
-    ("Coleman, Li, SIAM J. Optim. 6 (1996) 418", &["coleman1996"]),
-    ("Cranmer, Brehmer, Louppe, PNAS 117 (2020) 30055-30062", &["cranmer2020"]),
+/// Bibliography with one entry for each work, sorted by key; entries are separated by blank lines.
+const LITERATURE: &str = include_str!("literature.bib");
+
+/// Citations whose works do not follow from the first author and the year, and the keys of these works.
+const CITED: &[(&str, &[&str])] = &[
     (
         "Dahl, Aerospace Corporation TOR-0158(3107-18)-1 (1968), exponent 1; the same as Bouc-Wen (Wen, Journal of the Engineering Mechanics Division 102 (1976) 249) with n = 1, γ = 0",
         &["dahl1968", "wen1976"],
     ),
-    ("Demmel, Veselić, SIAM J. Matrix Anal. Appl. 13 (1992) 1204", &["demmel1992"]),
-    ("Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, section 2.1", &["denhartog1956"]),
-    ("Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, section 2.7", &["denhartog1956"]),
-    ("Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, sections 3.1 to 3.3", &["denhartog1956"]),
-    ("Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.2 (span)", &["doebelin2004"]),
-    ("Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.2 (zero drift)", &["doebelin2004"]),
-    ("Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.3", &["doebelin2004"]),
-    ("Draper, Smith, Applied Regression Analysis (3rd ed., Wiley 1998), section 1.2", &["draper1998"]),
-    ("Duclusaud, Passault, Padois, Ly, arXiv:2410.08650 (2024), model M3", &["duclusaud2024"]),
-    ("Duclusaud, Passault, Padois, Ly, arXiv:2410.08650 (2024), model M5", &["duclusaud2024"]),
-    ("Feeny, Liang, Journal of Sound and Vibration 195 (1996) 149", &["feeny1996"]),
     (
         "Feldman, Hilbert Transform Applications in Mechanical Vibration, Wiley 2011, chapter 9",
         &["feldman2011applications"],
     ),
     ("Feldman, Mechanical Systems and Signal Processing 25 (2011) 735-802", &["feldman2011hilbert"]),
-    (
-        "Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed., Addison-Wesley 1998, section 4.3",
-        &["franklin1998"],
-    ),
-    ("Gelman, Bayesian Analysis 1 (2006) 515-534", &["gelman2006"]),
-    (
-        "Gelman, Carlin, Stern, Dunson, Vehtari, Rubin, Bayesian Data Analysis, 3rd ed. (2013)",
-        &["gelman2013"],
-    ),
-    ("Gentleman, J. Inst. Math. Appl. 12 (1973) 329", &["gentleman1973"]),
-    ("Gilbert, Bell System Technical Journal 39 (1960) 1253", &["gilbert1960"]),
-    ("Golub, Numerische Mathematik 7 (1965) 206", &["golub1965"]),
-    ("Golub, Pereyra, SIAM Journal on Numerical Analysis 10 (1973) 413-432", &["golub1973"]),
-    ("Gragg, SIAM Journal on Numerical Analysis 2 (1965) 384-403", &["gragg1965"]),
-    ("Hager, Zhang, SIAM J. Optim. 16 (2005) 170: acceptance near the optimum", &["hager2005"]),
-    ("Hestenes, J. SIAM 6 (1958) 51", &["hestenes1958"]),
-    ("Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735-1780", &["hochreiter1997"]),
-    ("Hoffman, Gelman, Journal of Machine Learning Research 15 (2014) 1593-1623", &["hoffman2014"]),
-    ("Householder, J. ACM 5 (1958) 339", &["householder1958"]),
-    ("Huber, Annals of Mathematical Statistics 35 (1964) 73 (contaminated normal)", &["huber1964"]),
-    (
-        "Hunt, Crossley, Journal of Applied Mechanics 42 (1975) 440, with a linear contact spring",
-        &["hunt1975"],
-    ),
-    ("Keijzer, EuroGP 2003, Lecture Notes in Computer Science 2610, 70-82", &["keijzer2003"]),
-    (
-        "Kelly, Bettencourt, Johnson, Duvenaud, Advances in Neural Information Processing Systems 33 (2020) 4370-4380",
-        &["kelly2020"],
-    ),
-    ("Khalil, Nonlinear Systems, 3rd ed., Prentice Hall 2002, section 1.2", &["khalil2002"]),
-    ("Kingma, Ba, International Conference on Learning Representations (2015)", &["kingma2015"]),
-    (
-        "Kommenda, Burlacu, Kronberger, Affenzeller, Genetic Programming and Evolvable Machines 21 (2020) 471-501",
-        &["kommenda2020"],
-    ),
-    ("Kovacic, Brennan, The Duffing Equation, Wiley 2011, chapter 2", &["kovacic2011"]),
-    ("Koza, Genetic Programming (MIT Press 1992)", &["koza1992"]),
-    ("Krishnan, Electric Motor Drives, Prentice Hall 2001, chapter 3", &["krishnan2001"]),
-    ("Levenberg, Quart. Appl. Math. 2 (1944) 164", &["levenberg1944"]),
-    ("Liu, Nocedal, Mathematical Programming 45 (1989) 503", &["liu1989"]),
-    (
-        "Mangan, Kutz, Brunton, Proctor, Proceedings of the Royal Society A 473 (2017) 20170009",
-        &["mangan2017"],
-    ),
-    ("Marquardt, J. SIAM 11 (1963) 431", &["marquardt1963"]),
-    ("Marquardt, SIAM Journal on Applied Mathematics 11 (1963) 431-441", &["marquardt1963"]),
-    ("Messenger, Bortz, Multiscale Modeling & Simulation 19 (2021) 1474-1497", &["messenger2021"]),
-    ("Mira, Solgi, Imparato, Statistics and Computing 23 (2013) 653-662", &["mira2013"]),
-    ("Moré, Lecture Notes in Mathematics 630 (1978) 105", &["more1978"]),
-    ("Nayfeh, Mook, Nonlinear Oscillations, Wiley 1979, section 2.3", &["nayfeh1979"]),
-    ("Nayfeh, Mook, Nonlinear Oscillations, Wiley 1979, section 3.3.3", &["nayfeh1979"]),
-    ("Nocedal, Mathematics of Computation 35 (1980) 773-782", &["nocedal1980"]),
-    ("Nocedal, Wright, Numerical Optimization (2nd ed., Springer 2006), section 3.3", &["nocedal2006"]),
-    ("Nordin, Gutman, Automatica 38 (2002) 1633, dead-zone model", &["nordin2002"]),
     ("NumPy reference, numpy.polyfit", &["numpypolyfit"]),
-    (
-        "Olson, A passive solution to the sensor synchronization problem, IEEE/RSJ International Conference on Intelligent Robots and Systems 2010",
-        &["olson2010"],
-    ),
-    ("Patterson, Thompson, Biometrika 58 (1971) 545-554", &["patterson1971"]),
-    ("Putzky, Welling, arXiv:1706.04008 (2017)", &["putzky2017"]),
-    ("Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686-707", &["raissi2019"]),
-    ("Rasmussen, Williams, Gaussian Processes for Machine Learning (2006)", &["rasmussen2006"]),
-    ("Riley, Handbook of Frequency Stability Analysis, NIST SP 1065 (2008), section 2", &["riley2008"]),
-    ("Satterthwaite, Biometrics Bulletin 2 (1946) 110-114", &["satterthwaite1946"]),
-    ("Schaeffer, McCalla, Physical Review E 96 (2017) 023302", &["schaeffer2017"]),
-    (
-        "Souders, Flach, Hagwood, Yang, IEEE Transactions on Instrumentation and Measurement 39 (1990) 80",
-        &["souders1990"],
-    ),
-    ("Storn, Price, J. Global Optimization 11 (1997) 341", &["storn1997"]),
-    ("Vaswani et al., Advances in Neural Information Processing Systems 30 (2017)", &["vaswani2017"]),
-    ("Vehtari, Gelman, Simpson, Carpenter, Bürkner, Bayesian Analysis 16 (2021) 667-718", &["vehtari2021"]),
-    ("Widrow, Kollár, Quantization Noise, Cambridge 2008, chapter 3", &["widrow2008"]),
-    (
-        "de Silva, Sensors and Actuators, 2nd ed., CRC Press 2015 (eccentricity error of encoders)",
-        &["desilva2015"],
-    ),
-    (
-        "Åström, Hägglund, PID Controllers, 2nd ed., Instrument Society of America 1995, section 3.3",
-        &["astrom1995"],
-    ),
 ];
 
 /// Keys of the works that every diagnosis follows, whatever it finds: on the fits, the effective size of
 /// correlated samples, and the choice of the named effects.
 pub(super) const DIAGNOSIS: &[&str] = &["barbieri2004", "geyer1992", "marquardt1963"];
+
+/// Returns the keys and entries of the bibliography.
+pub(super) fn entries() -> Vec<(&'static str, &'static str)> {
+    let key = |entry: &'static str| Some(entry.split_once('{')?.1.split_once(',')?.0);
+    LITERATURE.split("\n\n").filter_map(|entry| Some((key(entry)?, entry.trim()))).collect()
+}
+
+/// Returns the keys of the works that a citation means: the listed ones, or the work whose key is the surname of
+/// the first author and a year that the citation names.
+pub(super) fn keys(citation: &str) -> Vec<&'static str> {
+    if let Some((_, keys)) = CITED.iter().find(|(text, _)| *text == citation) {
+        return keys.to_vec();
+    }
+    let author: String = citation.chars().flat_map(char::to_lowercase).filter_map(plain).collect();
+    let is_meant = |key: &str| {
+        key.split_at_checked(key.len().wrapping_sub(4)).is_some_and(|(name, year)| {
+            !name.is_empty() && author.starts_with(name) && citation.contains(year)
+        })
+    };
+    entries().into_iter().map(|(key, _)| key).filter(|key| is_meant(key)).collect()
+}
+
+/// Returns a lowercase letter without its accent; `None` for other characters.
+fn plain(letter: char) -> Option<char> {
+    Some(match letter {
+        'a'..='z' => letter,
+        'á' | 'ä' | 'å' => 'a',
+        'ć' | 'č' => 'c',
+        'é' | 'è' => 'e',
+        'ó' | 'ö' => 'o',
+        'š' => 's',
+        'ú' | 'ü' => 'u',
+        _ => return None,
+    })
+}

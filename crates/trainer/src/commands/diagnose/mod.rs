@@ -13,7 +13,7 @@ use crate::outcome::Outcome;
 use crate::terminal::interrupt::{self, Saving};
 use crate::terminal::progress::Progress;
 use arguments::DiagnoseArguments;
-use diagnosis::Observations;
+use diagnosis::{Observations, Stage};
 use dynamics::Nominal;
 use record::Quantity;
 use runs::{Disk, RunFolder, default_root};
@@ -98,9 +98,9 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
         })?;
         return Ok(Outcome::Done);
     }
-    let progress = Progress::over_stages(after(""), arguments.output.quiet || arguments.output.json);
-    let goes_on = |done: &'static str| {
-        progress.stage(after(done));
+    let progress = Progress::over_stages(after(None), arguments.output.quiet || arguments.output.json);
+    let goes_on = |done: Stage| {
+        progress.stage(after(Some(done)));
         true
     };
     let answer = pool.install(|| question.answer_watched(&arguments.settings(), arguments.seed, &goes_on));

@@ -1,23 +1,34 @@
-//! `trainer new`: the skeleton of a learner, which compiles, trains and is listed at once.
+//! `trainer new`: skeletons of a learner and of an estimator, which compile, run and are listed at once.
+
+mod estimator;
+mod learner;
+mod skeleton;
 
 use crate::error::{NewError, TrainerError};
 use crate::options::Output;
 use crate::outcome::Outcome;
-use ::learn::learners::LEARNERS;
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
+use learner::Form;
 use runs::write_file;
-use serde_json::json;
+use serde_json::{Value, json};
+use skeleton::Skeleton;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `trainer new`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
+A learner learns dynamics from sets of records and is scored on records that it has not seen; an estimator
+reads the damping from the peaks of one decay.
+
 Examples:
-  trainer new estimator echo-state --kind sequence
-  trainer new estimator spline-torque --kind field
+  trainer new learner echo-state --kind sequence
+  trainer new learner spline-torque --kind field
+  trainer new estimator robust-line
 Then:
   cargo run --release -p trainer -- configs/learn/echo-state.toml
-  cargo test -p learn learners")]
+  cargo test -p learn learners
+  cargo run -p trainer -- configs/compare.toml compare.methods=robust-line,pinn,ols
+  cargo test -p registry robust-line::")]
 pub(crate) struct NewArguments {
     #[command(subcommand)]
     what: What,
@@ -25,48 +36,37 @@ pub(crate) struct NewArguments {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// Writes the skeleton of an estimator of dynamics into a checkout of Ringdown: one file, its two lines
-    /// in the registry and a configuration
-    Estimator {
-        /// Its identifier: lowercase letters, digits and hyphens
-        name: String,
+    /// Writes the skeleton of a learner of dynamics into a checkout of Ringdown: one file, its two lines in
+    /// the registry and a configuration
+    Learner {
         /// Form of the model: from past and input to the future, a torque as a function of the state, or
         /// coefficients
         #[arg(long, value_enum)]
         kind: Form,
-        /// The checkout [default: the one that the current folder is in]
-        #[arg(long, value_name = "DIR")]
-        workspace: Option<PathBuf>,
         #[command(flatten)]
-        output: Output,
+        given: Given,
+    },
+    /// Writes the skeleton of an estimator of the damping into a checkout of Ringdown: a crate of two files
+    /// and its two lines in the registry
+    Estimator {
+        /// Writes a learner of this form instead, as `trainer new learner` does
+        #[arg(long, value_enum, hide = true)]
+        kind: Option<Form>,
+        #[command(flatten)]
+        given: Given,
     },
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Form {
-    /// A network from a window of the past and the input to the future
-    Sequence,
-    /// A torque as a function of position and velocity
-    Field,
-    /// Coefficients of a stated law
-    Regressor,
+#[derive(Debug, Args)]
+struct Given {
+    /// Its identifier: lowercase letters, digits and hyphens
+    name: String,
+    /// The checkout [default: the one that the current folder is in]
+    #[arg(long, value_name = "DIR")]
+    workspace: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
 }
-
-impl Form {
-    fn template(self) -> &'static str {
-        match self {
-            Self::Sequence => include_str!("sequence.txt"),
-            Self::Field => include_str!("field.txt"),
-            Self::Regressor => include_str!("regressor.txt"),
-        }
-    }
-}
-
-/// Path of the learners' registry in a checkout.
-const REGISTRY: &str = "crates/learn/src/learners/mod.rs";
-
-/// Line after which the registry's entries begin.
-const ENTRIES: &str = "pub static LEARNERS: &[Entry] = &[\n";
 
 /// Reserved words of Rust that could be names.
 const KEPT: [&str; 20] = [
@@ -76,7 +76,11 @@ const KEPT: [&str; 20] = [
 
 /// Writes the files of the skeleton.
 pub(crate) fn command(arguments: &NewArguments) -> Result<Outcome, TrainerError> {
-    let What::Estimator { name, kind, workspace, output } = &arguments.what;
+    let (given, form) = match &arguments.what {
+        What::Learner { kind, given } => (given, Some(*kind)),
+        What::Estimator { kind, given } => (given, *kind),
+    };
+    let name = &given.name;
     let is_word = |word: &str| {
         word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
             && word.chars().next().is_some_and(|first| first.is_ascii_lowercase())
@@ -84,104 +88,50 @@ pub(crate) fn command(arguments: &NewArguments) -> Result<Outcome, TrainerError>
     if !name.split('-').all(is_word) || KEPT.contains(&name.as_str()) {
         return Err(NewError::Name { name: name.clone() }.into());
     }
-    let home = checkout(workspace.as_deref())?;
-    let module = name.replace('-', "_");
-    let registry_path = home.join(REGISTRY);
-    let source_path = home.join(format!("crates/learn/src/learners/{module}.rs"));
-    let config_path = home.join(format!("configs/learn/{name}.toml"));
-    let registry = read(&registry_path)?;
-    let is_taken = LEARNERS.iter().any(|entry| entry.id == name)
-        || registry.contains(&format!("mod {module};"))
-        || [&source_path, &config_path].into_iter().any(|path| path.exists());
-    if is_taken {
-        return Err(NewError::Taken { name: name.clone() }.into());
+    let home = checkout(given.workspace.as_deref())?;
+    let skeleton = match form {
+        Some(form) => learner::skeleton(&home, name, form),
+        None => estimator::skeleton(&home, name),
+    }?;
+    // Registries are written last: until they name the files, nothing else knows of them.
+    for (path, text) in skeleton.files.iter().chain(&skeleton.registries) {
+        let folder = path.parent().unwrap_or(&home);
+        std::fs::create_dir_all(folder).map_err(|error| NewError::NoFolder {
+            folder: folder.display().to_string(),
+            reason: error.to_string(),
+        })?;
+        write_file(path, text.as_bytes())?;
     }
-    let registered = registered(&registry, &module)
-        .ok_or_else(|| NewError::Registry { file: registry_path.display().to_string() })?;
-    // The registry is written last: until it names the file, nothing else knows of it.
-    write_file(&source_path, filled(kind.template(), name).as_bytes())?;
-    write_file(&config_path, filled(include_str!("config.txt"), name).as_bytes())?;
-    write_file(&registry_path, registered.as_bytes())?;
-    let shown = |path: &Path| path.display().to_string();
-    let files = [&source_path, &config_path, &registry_path].map(|path| shown(path));
-    let result = json!({ "estimator": name, "files": files });
-    output.print(&result, || {
-        let [source, config, registry] = &files;
-        format!(
-            "{source}: written, yours to change\n{config}: written\n{registry}: two lines\n\nnext:\n  cargo run --release -p \
-             trainer -- configs/learn/{name}.toml\n  cargo test -p learn learners"
-        )
-    })?;
+    given.output.print(&result(name, &skeleton), || summary(name, &skeleton))?;
     Ok(Outcome::Done)
+}
+
+fn result(name: &str, skeleton: &Skeleton) -> Value {
+    let files = skeleton.files.iter().chain(&skeleton.registries);
+    let files: Vec<String> = files.map(|(path, _)| path.display().to_string()).collect();
+    json!({ skeleton.what: name, "files": files })
+}
+
+fn summary(name: &str, skeleton: &Skeleton) -> String {
+    let Skeleton { what, does, files, registries, next } = skeleton;
+    let files = files.iter().map(|(path, _)| format!("{}: written, yours to change", path.display()));
+    let registries = registries.iter().map(|(path, _)| format!("{}: its lines added", path.display()));
+    let next = next.iter().map(|command| format!("  {command}"));
+    let first = format!("{name}: {what}, which {does}");
+    let lines: Vec<String> = [first]
+        .into_iter()
+        .chain(files)
+        .chain(registries)
+        .chain(["\nnext:".to_owned()])
+        .chain(next)
+        .collect();
+    lines.join("\n")
 }
 
 /// Finds the checkout that contains a folder.
 fn checkout(stated: Option<&Path>) -> Result<PathBuf, NewError> {
     let given = stated.unwrap_or(Path::new("."));
     let from = given.canonicalize().unwrap_or_else(|_| given.to_path_buf());
-    let found = from.ancestors().find(|folder| folder.join(REGISTRY).is_file());
+    let found = from.ancestors().find(|folder| folder.join(learner::REGISTRY).is_file());
     found.map(Path::to_path_buf).ok_or_else(|| NewError::NoCheckout { folder: from.display().to_string() })
-}
-
-fn read(path: &Path) -> Result<String, NewError> {
-    let file = path.display().to_string();
-    std::fs::read_to_string(path).map_err(|error| NewError::Unreadable { file, reason: error.to_string() })
-}
-
-/// Adds a module and its entry to the registry's text; `None` if the registry has an unexpected form.
-fn registered(registry: &str, module: &str) -> Option<String> {
-    let line = format!("pub mod {module};\n");
-    let modules = registry.lines().filter(|line| line.starts_with("pub mod "));
-    let next = modules.map(|own| format!("{own}\n")).find(|own| own.as_str() > line.as_str());
-    let with_module = match &next {
-        Some(next) => registry.replacen(next.as_str(), &format!("{line}{next}"), 1),
-        None => {
-            let last = registry.lines().rfind(|line| line.starts_with("pub mod "))?;
-            registry.replacen(&format!("{last}\n"), &format!("{last}\n{line}"), 1)
-        }
-    };
-    let (before, after) = with_module.split_once(ENTRIES)?;
-    let (entries, rest) = after.split_once("];")?;
-    Some(format!("{before}{ENTRIES}{entries}    {module}::ENTRY,\n];{rest}"))
-}
-
-/// Fills a name into a template.
-fn filled(template: &str, name: &str) -> String {
-    let capital = |word: &str| {
-        let mut letters = word.chars();
-        letters
-            .next()
-            .map(|first| first.to_ascii_uppercase().to_string() + letters.as_str())
-            .unwrap_or_default()
-    };
-    let type_name: String = name.split('-').map(capital).collect();
-    let title = capital(&name.replace('-', " "));
-    template.replace("NewType", &type_name).replace("NEW-TITLE", &title).replace("new-id", name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_registry_gets_a_module_in_its_place_and_an_entry_at_its_end() {
-        let before = include_str!("../../../../learn/src/learners/mod.rs");
-        for (module, next) in [("echo_state", "pub mod gaussian_process;"), ("zigzag", "\nuse crate::Entry;")]
-        {
-            let after = registered(before, module).unwrap();
-            assert!(after.contains(&format!("pub mod {module};\n{next}")), "{after}");
-            assert!(after.contains(&format!("    {module}::ENTRY,\n];")), "{after}");
-            assert_eq!(after.lines().count(), before.lines().count() + 2);
-        }
-        assert!(registered("pub mod a;\n", "b").is_none());
-    }
-
-    #[test]
-    fn no_placeholder_is_left() {
-        for kind in [Form::Sequence, Form::Field, Form::Regressor] {
-            let text = filled(kind.template(), "echo-state");
-            assert!(text.contains("pub struct EchoState") && text.contains("\"echo-state\""));
-            assert!(!text.contains("NewType") && !text.contains("NEW-TITLE") && !text.contains("new-id"));
-        }
-    }
 }

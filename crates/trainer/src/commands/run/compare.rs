@@ -7,7 +7,6 @@ use crate::fits::ablations::{ablations, linfa};
 use crate::fits::agreement::disagreement;
 use crate::fits::cautions::cautions;
 use crate::fits::fit::{FitSetting, SeedFit, seeds};
-use crate::fits::input::scaled;
 use crate::fits::known_truth::{self, Answer};
 use crate::fits::method::{Method, Request};
 use crate::folders::page::write_report;
@@ -25,6 +24,7 @@ use results::{
 use runs::to_csv;
 use serde_json::json;
 use std::time::Instant;
+use workflow::estimate::scaled;
 
 /// Index of a method, and its fit or the reason why there is none.
 type Fitted = (usize, Result<SeedFit, Failure>);
@@ -163,7 +163,7 @@ fn outcome(
     let errors = || rows.iter().map(|row| row.error_percent);
     let worst = scoring::worst(errors());
     let envelope = &run.input.extraction.envelope;
-    let stated = scaled(&run.input, first.estimate.uncertainty, row.decay_rate);
+    let stated = scaled(&run.input.oracle, first.estimate.uncertainty, row.decay_rate);
     MethodOutcome::Estimate(MethodEstimate {
         decay_rate: row.decay_rate,
         zeta: row.zeta,

@@ -5,7 +5,6 @@ use super::summary;
 use crate::error::TrainerError;
 use crate::fits::agreement::disagreement;
 use crate::fits::fit::{FitSetting, SeedFit, seeds};
-use crate::fits::input::scaled;
 use crate::fits::known_truth::{self, Answer};
 use crate::fits::method::{Method, Request};
 use crate::folders::page::write_report;
@@ -17,6 +16,7 @@ use rayon::prelude::*;
 use results::{EstimateSummary, EstimationResult, RESULT_SCHEMA, Resonance, SeedRow, WithInterval};
 use runs::to_csv;
 use serde_json::json;
+use workflow::estimate::scaled;
 
 /// Fits every seed, stores the fit of the first, and reports the worst error.
 pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, TrainerError> {
@@ -72,7 +72,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
     let (experiment, input) = (run.experiment, &run.input);
     let envelope = &input.extraction.envelope;
     let estimate = &first.estimate;
-    let uncertainty = scaled(input, estimate.uncertainty, estimate.decay_rate);
+    let uncertainty = scaled(&input.oracle, estimate.uncertainty, estimate.decay_rate);
     let tolerance = experiment.fit.tolerance_percent;
     let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
     let zeta = envelope.damping_ratio(estimate.decay_rate);

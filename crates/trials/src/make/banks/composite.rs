@@ -13,7 +13,6 @@ use crate::make::draws::Draws;
 use crate::make::error::TrialError;
 use crate::make::integrator::{TorqueLaw, motions};
 use crate::make::job::Job;
-use crate::make::open_law::{OpenLaw, SizedLaw};
 use crate::make::plan::TrialPlan;
 use crate::make::ranges::Ranges;
 use crate::make::recalibration::Absorbed;
@@ -21,7 +20,6 @@ use crate::make::setup::{ATTEMPTS, Setup};
 use crate::make::situation::{Motion, Motions, Situation};
 use crate::make::unlisted;
 use crate::{HiddenEffect, Unlisted};
-use dynamics::DynamicsError;
 use seed::Seed;
 use std::f64::consts::PI;
 use truth::Sampling;
@@ -159,7 +157,9 @@ impl Parts {
             }
             let drawn = (other.draw)(situation, &mut Draws::new(&own.child(effect.id())));
             let detectability = floors * count.sqrt();
-            let Some(sized) = within_reach(&drawn.open, setup, detectability)? else { continue };
+            let Some(sized) = setup.sized(&drawn.open, detectability, Absorbed::BY_RECALIBRATION)? else {
+                continue;
+            };
             parts.effects.push(HiddenEffect {
                 id: effect.id().to_owned(),
                 parameters: (drawn.parameters)(sized.size),
@@ -173,7 +173,9 @@ impl Parts {
         let laws = shuffled(unlisted::REGISTRY.iter().collect(), draws);
         for (law, floors) in laws.into_iter().zip(&sizes.unlisted) {
             let (open, _) = (law.draw)(situation, &mut Draws::new(&own.child(law.name)));
-            let Some(sized) = within_reach(&open, setup, floors * count.sqrt())? else { continue };
+            let Some(sized) = setup.sized(&open, floors * count.sqrt(), Absorbed::BY_RECALIBRATION)? else {
+                continue;
+            };
             parts.unlisted.push(Unlisted {
                 law: law.name.to_owned(),
                 floors: sized.detectability / count.sqrt(),
@@ -182,15 +184,6 @@ impl Parts {
             parts.laws.push(sized.law);
         }
         Ok((parts.effects.len() > 1 && !parts.unlisted.is_empty()).then_some(parts))
-    }
-}
-
-/// Returns a law of the wanted size; `None` if no size is large enough or the motion diverges during the
-/// search.
-fn within_reach(open: &OpenLaw, setup: &Setup, detectability: f64) -> Result<Option<SizedLaw>, TrialError> {
-    match setup.sized(open, detectability, Absorbed::BY_RECALIBRATION) {
-        Err(TrialError::Dynamics(DynamicsError::Diverged { .. })) => Ok(None),
-        sized => sized,
     }
 }
 

@@ -1,7 +1,6 @@
 //! `trainer diagnose --rigs`: several rigs of one build, each diagnosed separately, and the effects that they
 //! share.
 
-mod shared;
 mod summary;
 
 use super::arguments::DiagnoseArguments;
@@ -15,12 +14,12 @@ use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use crate::terminal::{console, interrupt};
 use rayon::prelude::*;
-use results::{FailedCase, RIGS_SCHEMA, RigsResult};
+use results::{FailedCase, RigsResult};
 use runs::{Disk, RunFolder, default_root};
-use shared::Answered;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use workflow::Question;
+use workflow::rigs::{AnsweredRig, pooled};
 
 /// Rig and the name of its answer's folder.
 struct Rig {
@@ -30,7 +29,7 @@ struct Rig {
 }
 
 /// Outcome of one rig, with the digests of its records.
-type Fate = Result<(Answered, String), FailedCase>;
+type Fate = Result<(AnsweredRig, String), FailedCase>;
 
 /// Diagnoses every rig and combines the answers. A rig that fails is reported, and the others continue.
 pub(super) fn rigs(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
@@ -90,16 +89,7 @@ fn kept_result(
             Err(case) => failed.push(case),
         }
     }
-    let classes = shared::classes(&rigs);
-    let result = RigsResult {
-        schema: RIGS_SCHEMA.to_owned(),
-        sentences: shared::sentences(&rigs, &classes),
-        rigs: rigs.iter().map(Answered::row).collect(),
-        classes,
-        failed,
-        complete,
-        seconds: start.elapsed().as_secs_f64(),
-    };
+    let result = pooled(&rigs, failed, complete, start.elapsed().as_secs_f64());
     folder.write_json("environment.json", &Environment::new(threads, &digests.join(" ")))?;
     folder.write_json("rigs.json", &result)?;
     write_report(folder)?;
@@ -146,7 +136,7 @@ fn answered(
     rig: &Rig,
     out: &Path,
     threads: usize,
-) -> Result<(Answered, String), TrainerError> {
+) -> Result<(AnsweredRig, String), TrainerError> {
     let question = Question::read(&rig.case.records, &rig.case.nominal, &arguments.reading.plain())?;
     let asked = kept::asked(arguments, &question);
     let folder = RunFolder::resume_on(&Disk::default(), &out.join(&rig.name))?;
@@ -159,5 +149,5 @@ fn answered(
         }
     };
     let folder = rig.folder.display().to_string();
-    Ok((Answered { name: rig.name.clone(), folder, result }, question.digests()))
+    Ok((AnsweredRig { name: rig.name.clone(), folder, result }, question.digests()))
 }

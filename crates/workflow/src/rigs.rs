@@ -1,11 +1,14 @@
-//! Classes of effects that several rigs of one build share: probability over all rigs, and agreement of
+//! Several rigs of one build: probability over all rigs that they have a class of effects, and agreement of
 //! coefficients.
+//!
+//! The rigs of a build share which effects they have, not how large these are: each rig keeps its own
+//! coefficients, which are compared by Cochran's Q.
 
 use record::Origin;
 use report::{format, nameless_share};
 use results::{
-    DiagnosisResult, EffectRow, FarthestPair, ParameterRow, RigClassRow, RigRow, RigValueRow, SharedClassRow,
-    SharedCoefficientRow, WithInterval,
+    DiagnosisResult, EffectRow, FailedCase, FarthestPair, ParameterRow, RIGS_SCHEMA, RigClassRow, RigRow,
+    RigValueRow, RigsResult, SharedClassRow, SharedCoefficientRow, WithInterval,
 };
 use scoring::{Agreement, agreement};
 
@@ -33,14 +36,33 @@ const SIGNIFICANCE: f64 = 0.01;
 const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
 /// Rig with its answer.
-pub(super) struct Answered {
-    pub(super) name: String,
-    pub(super) folder: String,
-    pub(super) result: DiagnosisResult,
+pub struct AnsweredRig {
+    /// Name of the rig.
+    pub name: String,
+    /// Folder of its records, as given.
+    pub folder: String,
+    /// Answer on its own records.
+    pub result: DiagnosisResult,
 }
 
-impl Answered {
-    pub(super) fn row(&self) -> RigRow {
+/// Combines the answers of a build's rigs into the content of `rigs.json`. `failed` lists the rigs without an answer,
+/// `complete` is `false` after an interruption, and `seconds` is the time that all took.
+#[must_use]
+pub fn pooled(rigs: &[AnsweredRig], failed: Vec<FailedCase>, complete: bool, seconds: f64) -> RigsResult {
+    let classes = classes(rigs);
+    RigsResult {
+        schema: RIGS_SCHEMA.to_owned(),
+        sentences: sentences(rigs, &classes),
+        rigs: rigs.iter().map(AnsweredRig::row).collect(),
+        classes,
+        failed,
+        complete,
+        seconds,
+    }
+}
+
+impl AnsweredRig {
+    fn row(&self) -> RigRow {
         RigRow {
             name: self.name.clone(),
             folder: self.folder.clone(),
@@ -72,7 +94,7 @@ impl Answered {
 /// A rig's log odds are the sum of the prior log odds and the contribution of its records. Given that the
 /// build has the class, or lacks it, the rigs' records are independent, so their contributions are summed and
 /// the prior is counted once: logit p = Σ logit pᵢ − (n − 1) logit p₀.
-pub(super) fn combined(probabilities: &[f64]) -> f64 {
+fn combined(probabilities: &[f64]) -> f64 {
     let logit = |p: f64| (p / (1.0 - p)).ln();
     let sum: f64 = probabilities.iter().map(|p| logit(p.clamp(LEAST, 1.0 - LEAST))).sum();
     let log_odds = sum - (probabilities.len() as f64 - 1.0) * logit(PRIOR);
@@ -81,7 +103,7 @@ pub(super) fn combined(probabilities: &[f64]) -> f64 {
 
 /// Returns every class that some rig states, with its probability over all rigs and its coefficients; the
 /// most probable class comes first.
-pub(super) fn classes(rigs: &[Answered]) -> Vec<SharedClassRow> {
+fn classes(rigs: &[AnsweredRig]) -> Vec<SharedClassRow> {
     let mut ids: Vec<&str> = Vec::new();
     for class in rigs.iter().flat_map(|rig| &rig.result.classes) {
         if !ids.contains(&class.id.as_str()) {
@@ -110,7 +132,7 @@ const POSSIBLE: f64 = 0.1;
 
 /// Returns the coefficients of the kinds of a class that some rig names or cannot rule out; those of the
 /// likeliest kind come first.
-fn coefficients(rigs: &[Answered], class: &str) -> Vec<SharedCoefficientRow> {
+fn coefficients(rigs: &[AnsweredRig], class: &str) -> Vec<SharedCoefficientRow> {
     let mut kinds: Vec<(&str, f64, bool)> = Vec::new();
     for rig in rigs {
         for own in rig.result.classes.iter().filter(|own| own.id == class) {
@@ -132,7 +154,7 @@ fn coefficients(rigs: &[Answered], class: &str) -> Vec<SharedCoefficientRow> {
     kinds.into_iter().flat_map(|(kind, ..)| of_kind(rigs, kind)).collect()
 }
 
-fn of_kind(rigs: &[Answered], effect: &str) -> Vec<SharedCoefficientRow> {
+fn of_kind(rigs: &[AnsweredRig], effect: &str) -> Vec<SharedCoefficientRow> {
     let rows: Vec<(&str, &EffectRow)> =
         rigs.iter().filter_map(|rig| Some((rig.name.as_str(), rig.effect(effect)?))).collect();
     let Some((_, first)) = rows.first() else { return Vec::new() };
@@ -159,6 +181,7 @@ fn coefficient(
     parameter: &str,
     values: &[(&str, &ParameterRow)],
 ) -> SharedCoefficientRow {
+    // There is at least one value.
     let unit = values.first().map(|(_, own)| own.unit.clone()).unwrap_or_default();
     let is_one_unit = values.iter().all(|(_, own)| own.unit == unit);
     let estimates: Vec<(f64, f64)> = values
@@ -187,6 +210,7 @@ fn coefficient(
             .collect(),
         agree,
         chi_squared: found.map(|found| found.chi_squared),
+        // A single value is compared with none.
         degrees: found.map_or(0, |found| found.degrees),
         mean: found.filter(|_| agree == Some(true)).map(mean),
         farthest: found.map(|found| {
@@ -203,7 +227,7 @@ fn mean(found: Agreement) -> WithInterval {
 
 /// Describes the table in sentences, one for each class that is likely on some rig, in the order of the
 /// table.
-pub(super) fn sentences(rigs: &[Answered], classes: &[SharedClassRow]) -> Vec<String> {
+fn sentences(rigs: &[AnsweredRig], classes: &[SharedClassRow]) -> Vec<String> {
     let mut sentences: Vec<String> = classes
         .iter()
         .filter(|class| !class.present_in.is_empty())
@@ -215,7 +239,7 @@ pub(super) fn sentences(rigs: &[Answered], classes: &[SharedClassRow]) -> Vec<St
     sentences.iter().map(|text| format::plain_spaces(text)).collect()
 }
 
-fn sentence(rigs: &[Answered], class: &SharedClassRow) -> String {
+fn sentence(rigs: &[AnsweredRig], class: &SharedClassRow) -> String {
     let title = report::class_title(&class.id);
     let probability = format::probability(class.probability);
     let lead = if class.present_in.len() == rigs.len() {
