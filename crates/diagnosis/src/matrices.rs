@@ -1,23 +1,8 @@
-//! Access to entries of matrices and vectors without a panic: a missing entry reads as zero, and setting it
-//! does nothing.
+//! Symmetric systems: raised diagonals and a scaled solution.
 
-use nalgebra::{DMatrix, DVector};
+#![allow(clippy::indexing_slicing, reason = "rows and columns are those of the matrices")]
 
-pub(crate) fn entry(matrix: &DMatrix<f64>, row: usize, column: usize) -> f64 {
-    // A missing entry is zero, as the module documentation says.
-    matrix.get((row, column)).copied().unwrap_or(0.0)
-}
-
-pub(crate) fn set(matrix: &mut DMatrix<f64>, row: usize, column: usize, value: f64) {
-    if let Some(slot) = matrix.get_mut((row, column)) {
-        *slot = value;
-    }
-}
-
-pub(crate) fn element(vector: &DVector<f64>, index: usize) -> f64 {
-    // A missing entry is zero, as the module documentation says.
-    vector.get(index).copied().unwrap_or(0.0)
-}
+use nalgebra::DMatrix;
 
 /// Minimum relative increase of each entry of a diagonal, against rounding.
 const LEAST: f64 = 1e-13;
@@ -29,8 +14,8 @@ const LEAST: f64 = 1e-13;
 pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
     let mut raised = matrix.clone();
     for i in 0..matrix.nrows() {
-        let own = entry(matrix, i, i);
-        set(&mut raised, i, i, if own > 0.0 { own * (1.0 + factor + LEAST) } else { 1.0 });
+        let own = matrix[(i, i)];
+        raised[(i, i)] = if own > 0.0 { own * (1.0 + factor + LEAST) } else { 1.0 };
     }
     raised
 }
@@ -43,8 +28,8 @@ pub(crate) fn ridged(
 ) -> DMatrix<f64> {
     let mut ridged = matrix.clone();
     for i in entries {
-        let own = entry(matrix, i, i);
-        set(&mut ridged, i, i, own * (1.0 + ridge));
+        let own = matrix[(i, i)];
+        ridged[(i, i)] = own * (1.0 + ridge);
     }
     ridged
 }
@@ -52,15 +37,14 @@ pub(crate) fn ridged(
 /// Solves a symmetric system after scaling it to a unit diagonal, since parameters differ by many orders of
 /// magnitude.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale: Vec<f64> =
-        matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
-    let at = |i: usize| scale.get(i).copied().unwrap_or(1.0);
+    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
+    debug_assert!(matrix.is_square() && matrix.nrows() == right.nrows());
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-        entry(matrix, i, j) * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
+        matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-13 } else { 0.0 }
     });
-    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(right, i, j) * at(i));
+    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] * scale[i]);
     let solution = scaled.cholesky()?.solve(&scaled_right);
-    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(&solution, i, j) * at(i)))
+    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solution[(i, j)] * scale[i]))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Trials on simulated and on measured records.
+//! Trials on simulated records.
 
 use crate::{Diagnosis, Observations, Settings, Status, diagnose};
 use dynamics::chain::{Chain, Observed};
@@ -7,137 +7,12 @@ use dynamics::{Active, Coordinate, Nominal, Start, System};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
-use record::{Clock, ClockChoice, CsvColumns, Format, Quantity, ReadOptions, Record, read_file};
+use record::{Clock, ClockChoice, Quantity, Record};
 use seed::Seed;
-use std::path::{Path, PathBuf};
-
-fn report(answer: &Diagnosis) {
-    let gap = &answer.gap;
-    println!(
-        "{:?} {:?} {:.3} eq {:?}",
-        answer.verdict.status, answer.verdict.effects, answer.verdict.confidence, answer.verdict.equivalent
-    );
-    println!(
-        "  R0 {:.3e} Rc {:.3e} Rm {:.3e} ceiling {:.3e} floor {:.3e} closure {:.4} {:?} ratio {:.2} third {:?}",
-        gap.nominal,
-        gap.recalibrated,
-        gap.repaired,
-        gap.ceiling,
-        gap.noise_floor,
-        gap.closure.value,
-        gap.closure.interval_95,
-        gap.ratio_to_floor,
-        gap.last_third
-    );
-    println!("  {:?}", answer.place.budget);
-    for effect in answer.effects.iter().take(6) {
-        let values: Vec<String> =
-            effect.parameters.iter().map(|p| format!("{} {:.4e}", p.name, p.estimate.value)).collect();
-        println!(
-            "  {} {:.3} {:?} {}",
-            effect.id,
-            effect.probability,
-            effect.gap_share.map(|s| s.value),
-            values.join(" ")
-        );
-    }
-    for set in answer.sets.iter().take(5) {
-        println!(
-            "    {:?} p {:.3} rms {:.3e} evidence {:.1}",
-            set.effects, set.probability, set.rms, set.evidence
-        );
-    }
-    println!(
-        "  rivals {:?}",
-        answer
-            .rivals
-            .iter()
-            .take(3)
-            .map(|r| format!("{}~{} {:.1}", r.effect, r.rival, r.distance))
-            .collect::<Vec<_>>()
-    );
-    println!("  next {:?}", answer.next_experiment.as_ref().map(|e| (&e.text, &e.separates, &e.considered)));
-    println!(
-        "  d {:?} {:?}",
-        answer.detectability,
-        answer.measuring_chain.findings.iter().map(|f| f.effect).collect::<Vec<_>>()
-    );
-    println!(
-        "  {:?}",
-        answer.stages.iter().map(|s| format!("{} {:.2}", s.name, s.seconds)).collect::<Vec<_>>()
-    );
-}
 
 fn answer(observations: &[Observations], nominal: &Nominal) -> Diagnosis {
     let clock = std::time::Instant::now();
     diagnose(observations, nominal, &Settings::default(), &|| clock.elapsed().as_secs_f64()).unwrap()
-}
-
-fn shared(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name)
-}
-
-/// Reads a measured record and its nominal simulator; `None`, with a message, if the data are missing.
-fn measured(record: &str, nominal: &str, options: &ReadOptions) -> Option<(Observations, Nominal)> {
-    if !shared(record).exists() {
-        println!("skipped: {record} is not here");
-        return None;
-    }
-    let (record, _) = read_file(&shared(record), options).unwrap();
-    let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
-    let nominal = toml::from_str(&std::fs::read_to_string(shared(nominal)).unwrap()).unwrap();
-    Some((Observations::new(&record, &clock), nominal))
-}
-
-fn columns(angle: &str, input: Option<&str>) -> ReadOptions {
-    let columns = CsvColumns {
-        value: Some(angle.to_owned()),
-        input: input.map(str::to_owned),
-        ..CsvColumns::default()
-    };
-    ReadOptions { columns, ..ReadOptions::default() }
-}
-
-fn try_measured(record: &str, nominal: &str, options: &ReadOptions) {
-    if let Some((observations, nominal)) = measured(record, nominal, options) {
-        report(&answer(&[observations], &nominal));
-    }
-}
-
-/// `cargo test --release -p diagnosis trials::rig -- --ignored --nocapture`
-#[test]
-#[ignore = "seconds in a release build, a minute without"]
-fn rig() {
-    let options = ReadOptions { format: Format::HostLog, ..ReadOptions::default() };
-    try_measured("horizontal-pendulum/80P.txt", "horizontal-pendulum/nominal.toml", &options);
-}
-
-/// As [`rig`].
-#[test]
-#[ignore = "seconds in a release build, a minute without"]
-fn encoder() {
-    try_measured("encoder-pendulum/record-a.csv", "encoder-pendulum/nominal.toml", &columns("angle", None));
-}
-
-/// As [`rig`].
-#[test]
-#[ignore = "seconds in a release build, a minute without"]
-fn servo() {
-    for arm in ["a", "b"] {
-        try_measured(
-            &format!("servo-pendulum/swing-{arm}.csv"),
-            &format!("servo-pendulum/nominal-{arm}.toml"),
-            &columns("angle_rad", None),
-        );
-    }
-}
-
-/// As [`rig`].
-#[test]
-#[ignore = "seconds in a release build, a minute without"]
-fn drive() {
-    let options = columns("qm_m", Some("vir_V"));
-    try_measured("positioning-drive/record.csv", "positioning-drive/nominal.toml", &options);
 }
 
 const OMEGA: f64 = 7.0 * std::f64::consts::PI;
@@ -200,7 +75,7 @@ const CASES: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[0.1, 180.0, 0.2]),
 ];
 
-/// `cargo test --release -p diagnosis trials::every_effect_is_found -- --ignored --nocapture`
+/// `cargo test --release -p diagnosis trials::every_effect_is_found -- --ignored`
 #[test]
 #[ignore = "a minute in a release build"]
 fn every_effect_is_found() {
@@ -208,8 +83,6 @@ fn every_effect_is_found() {
     for (number, case) in CASES.iter().enumerate() {
         let observations = record(&system(&[*case]), 25.0, 1e-3, 0.0, number as u64, &plain);
         let answer = answer(&[observations], &nominal());
-        println!("== {}", case.0);
-        report(&answer);
         if answer.verdict.effects.first() != Some(&case.0) {
             missed.push(case.0);
         }
@@ -226,10 +99,8 @@ fn clean_records_lack_nothing() {
     for seed in 0..10 {
         let observations = record(&system(&[]), 25.0, 1e-3, 0.0, 100 + seed, &plain);
         let clean = answer(std::slice::from_ref(&observations), &off);
-        println!("{:?} {:?}", clean.verdict, clean.stages.iter().map(|s| s.seconds).sum::<f64>());
         assert_eq!(clean.verdict.status, Status::None);
         let shifted = answer(&[observations], &other);
-        println!("{:?}", shifted.verdict);
         assert_eq!(shifted.verdict.status, Status::Calibration);
     }
 }
@@ -360,21 +231,4 @@ fn a_bank_of_hidden_effects() {
         }
     }
     assert!(short.is_empty(), "{short:?}");
-}
-
-/// As [`rig`].
-#[test]
-#[ignore = "seconds in a release build, a minute without"]
-fn silverbox() {
-    let columns = CsvColumns {
-        sample_rate_hz: Some(610.35),
-        value: Some("output_v".to_owned()),
-        input: Some("input_v".to_owned()),
-        ..CsvColumns::default()
-    };
-    try_measured(
-        "silverbox/record.csv",
-        "silverbox/nominal.toml",
-        &ReadOptions { columns, ..ReadOptions::default() },
-    );
 }

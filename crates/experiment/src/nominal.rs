@@ -6,6 +6,8 @@
 //! that a table `[input]` marks the system as driven. A repaired simulator can therefore be read as a nominal
 //! one without changes.
 
+#![allow(clippy::indexing_slicing, reason = "the number of alternatives is checked when compiled")]
+
 use crate::actuator;
 use dynamics::{
     Active, Actuator, Coefficients, Coordinate, DynamicsError, Effect, KnownEffect, Nominal,
@@ -299,11 +301,11 @@ fn one_of<const N: usize>(
     table: &str,
     keys: &[&str; N],
 ) -> Result<String, SettingsError> {
+    const { assert!(N > 0, "there is an alternative") };
     let mut stated = keys.iter().filter(|key| document.get(&dotted(table, key)).is_some());
     let alternatives = keys.join(", ");
     let Some(first) = stated.next() else {
-        // A list of alternatives always has a first entry.
-        let key = keys.first().copied().unwrap_or_default();
+        let key = keys[0];
         let field = FIELDS.iter().find(|field| field.key == key);
         return Err(SettingsError::Missing {
             file: document.file().to_owned(),

@@ -145,7 +145,6 @@ pub fn urdf(repaired: &Repaired) -> String {
         text,
         "  <parent link=\"base\"/>\n  <child link=\"body\"/>\n{limit}  <dynamics damping=\"{:?}\" friction=\"{:?}\"/>\n</joint>\n",
         nominal.damping(),
-        // Without dry friction the value is the format's own default.
         terms.friction.unwrap_or(0.0)
     );
     text

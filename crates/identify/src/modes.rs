@@ -4,6 +4,8 @@
 //! Hankel matrix (Kung 1978; Hua, Sarkar 1990), and all are refined together by variable projection (Golub,
 //! Pereyra 1973) on all samples at their times.
 
+#![allow(clippy::indexing_slicing, reason = "numbers of lines are those of the fit")]
+
 mod fit;
 mod pair;
 mod pencil;
@@ -83,9 +85,8 @@ pub fn modes(record: &Record, clock: &Clock) -> Vec<Mode> {
     if input(record, clock).is_some() {
         return Vec::new();
     }
-    Samples::new(record, clock)
-        .and_then(|samples| Some(samples.reported(&samples.fitted()?)))
-        .unwrap_or_default() // None without motion.
+    let reported = |samples: Samples| Some(samples.reported(&samples.fitted()?));
+    Samples::new(record, clock).and_then(reported).into_iter().flatten().collect()
 }
 
 /// Strongest mode of a free decay, alone.
@@ -202,8 +203,7 @@ impl Samples {
             return Some(around(line, narrow));
         }
         let mut order: Vec<usize> = (0..fit.lines.len()).collect();
-        // Every number in the order is that of a line.
-        let energy = |number: &usize| fit.lines.get(*number).map_or(0.0, |line| line.energy);
+        let energy = |number: &usize| fit.lines[*number].energy;
         order.sort_by(|one, other| energy(other).total_cmp(&energy(one)));
         for (place, &weak) in order.iter().enumerate() {
             let stronger = order.iter().take(place);

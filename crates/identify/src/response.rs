@@ -194,7 +194,6 @@ impl Problem {
         let mut knots: Vec<Knot> = Vec::with_capacity(at.len());
         for (index, &(time, push)) in at.iter().enumerate() {
             let next = at.get(index + 1).filter(|next| !kept && next.0 > time);
-            // The last input has no next one, and stays.
             let rate = next.map_or(0.0, |next| (next.1 - push) / (next.0 - time));
             let value = rest.next_if(|sample| sample.0 <= time).map(|sample| sample.1);
             knots.push(Knot { time, push, rate, value });
@@ -299,9 +298,9 @@ impl Problem {
                 sums.normal += row * row.transpose();
                 sums.slope += row * residual;
                 sums.rest += residual * residual;
-                // The first residual has none before it.
-                sums.next += residual * before.unwrap_or(0.0);
-                before = Some(residual);
+                if let Some(before) = before.replace(residual) {
+                    sums.next += residual * before;
+                }
             }
             let Some(next) = next else { break };
             let steps = ((next.time - knot.time) * fastest / LONGEST).ceil().clamp(1.0, MOST_STEPS);

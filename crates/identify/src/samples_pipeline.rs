@@ -204,7 +204,6 @@ impl SamplesPipeline {
         let enough = (FEWEST_SAMPLES + 1) as f64 / clock.sample_rate_hz;
         let length_s = (periods * TAU / swing.omega).min(1.0 / swing.decay.max(0.0)).max(enough);
         let (windows, offset) = swing.windows(&clock.times_s, length_s);
-        // Without windows there is no decay, whatever the noise.
         let noise = median(windows.iter().map(Window::scatter).collect()).unwrap_or(0.0);
         let windows = self.free_decay(&windows, noise, swing.quantum);
         if windows.len() < FEWEST_WINDOWS {
@@ -312,9 +311,7 @@ impl Swing {
         let phases = windows.iter().map(|window| {
             let (cosine, sine) = window.parts;
             let phase = sine.atan2(cosine) + self.omega * window.time;
-            // The first window turns by nothing.
-            let step = before.map_or(0.0, |before| phase - before);
-            before = Some(phase);
+            let step = phase - before.replace(phase).unwrap_or(phase);
             turned += step - TAU * (step / TAU).round();
             turned
         });

@@ -153,8 +153,10 @@ impl<'a> Samples<'a> {
     }
 
     fn duration(&self) -> f64 {
-        // A record without samples has no duration.
-        self.times.first().zip(self.times.last()).map_or(0.0, |(first, last)| last - first)
+        match self.times {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        }
     }
 
     /// Returns the period of the strongest line in the spectrum of the values, in seconds, between eight

@@ -110,9 +110,8 @@ pub fn device() -> Result<Device, FitError> {
 /// # Errors
 /// [`FitError::Backend`] if burn refuses the setting.
 pub fn cpu_as_set() -> Result<Device, FitError> {
-    let precision = CPU.get().and_then(|set| set.as_ref().ok()).map(|(_, precision)| *precision);
-    // Double precision if the process has not set any yet.
-    device_of(DeviceKind::Cpu, precision.unwrap_or_default())
+    let set = CPU.get().and_then(|set| set.as_ref().ok());
+    device_of(DeviceKind::Cpu, set.map_or(Precision::F64, |(_, precision)| *precision))
 }
 
 /// Returns a device of a kind in a precision; the first one if there are several.

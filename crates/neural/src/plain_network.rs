@@ -253,7 +253,8 @@ mod tests {
     #[test]
     fn a_wrong_number_of_parameters_is_refused() {
         for count in [0, 10, 100] {
-            assert!(PlainNetwork::new(&[5, 4], &vec![0.1; count]).is_err());
+            let refused = PlainNetwork::new(&[5, 4], &vec![0.1; count]).map(|_| ()).unwrap_err().to_string();
+            assert!(refused.contains(&format!("{count} parameters for a network of ")), "{refused}");
         }
     }
 }

@@ -27,6 +27,14 @@ impl Sequence {
         self.times.len()
     }
 
+    /// Returns the number of entries of each of several sequences, which are equally long; 0 without any.
+    #[must_use]
+    pub fn length(sequences: &[Self]) -> usize {
+        let length = sequences.first().map_or(0, Self::len);
+        debug_assert!(sequences.iter().all(|own| own.len() == length));
+        length
+    }
+
     /// Returns `true` if there are no entries.
     #[must_use]
     pub fn is_empty(&self) -> bool {

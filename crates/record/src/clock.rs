@@ -8,6 +8,8 @@
 //! The values decide between two clocks. The autocorrelation of the stamps' steps was tried and does not: for a
 //! reading loop that sleeps until its next deadline it is neither −0.5 (late stamps of an even clock) nor 0.
 
+#![allow(clippy::indexing_slicing, reason = "`Record::new` refuses a record without samples")]
+
 use crate::error::Fault;
 use crate::line::Line;
 use crate::lost::Numbers;
@@ -106,14 +108,11 @@ impl Clock {
     pub fn new(record: &Record, choice: ClockChoice) -> Result<Self, Fault> {
         let rounding = stamp_rounding(record.stamps_s());
         let stamps = &*without_ties(record.stamps_s(), rounding);
-        // Every record has samples; `Record::new` checks it.
-        let first = stamps.first().copied().unwrap_or_default();
         let rows = record.row_numbers();
         let ends = group_ends(stamps, &rows);
         if ends.len() < 2 {
-            return Err(Fault::NoTimePasses { stamp: first });
+            return Err(Fault::NoTimePasses { stamp: stamps[0] });
         }
-        // Stamps that lie on no lattice are not rounded: their step is zero.
         let numbers = Numbers::with_lost(&ends, &rows, record.values(), rounding.unwrap_or(0.0))
             .unwrap_or_else(|| Numbers::plain(&ends, &rows));
         let line = Line::through(&numbers.ends);
@@ -156,8 +155,7 @@ impl Clock {
     #[must_use]
     pub fn inputs_between(&self, record: &Record) -> Vec<(f64, f64)> {
         debug_assert_eq!(self.times_s.len(), record.len(), "a clock has a time for every sample");
-        // Without numbered rows there are no rows between samples.
-        let rows = record.rows().unwrap_or_default();
+        let rows = record.rows().unwrap_or(&[]);
         let by_number = |own: &InputRow| {
             let [(first, from), (last, to)] = beside(rows, &self.times_s, own.row)?;
             let passed = if own.row > first {
@@ -179,16 +177,16 @@ impl Clock {
     /// Returns the time from the first sample to the last one, in seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        // A clock without times has no duration.
-        self.times_s.last().map_or(0.0, |last| last - self.start_s())
+        match self.times_s.as_slice() {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        }
     }
 
     /// Returns the time of the first sample, in seconds.
     #[must_use]
     pub fn start_s(&self) -> f64 {
-        debug_assert!(!self.times_s.is_empty(), "a clock lies over two samples at least");
-        // Always present: asserted above.
-        self.times_s.first().copied().unwrap_or(0.0)
+        self.times_s[0]
     }
 }
 

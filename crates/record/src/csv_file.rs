@@ -286,8 +286,7 @@ fn read(
     let width = table.columns.len();
     let columns = chosen.columns();
     let (held, finding) = table.held(chosen.input, chosen.value, rows);
-    // The observed column is always among them.
-    let needed = columns.iter().max().map_or(0, |at| at + 1);
+    let needed = columns.iter().map(|at| at + 1).fold(0, usize::max);
     let times =
         chosen.time.into_iter().flat_map(|time| rows.iter().filter_map(move |(_, row)| row.get(time.at)));
     let is_counted = chosen.counted.is_some();
@@ -296,7 +295,7 @@ fn read(
     let mut number = 0;
     for (at, (line, row)) in rows.iter().enumerate() {
         // A row that ends before the column has an empty cell there.
-        let cell = |at: usize| row.get(at).copied().unwrap_or_default();
+        let cell = |at: usize| row.get(at).copied().unwrap_or("");
         if chosen.is_run && columns.iter().all(|at| is_missing(cell(*at))) {
             continue;
         }

@@ -93,8 +93,7 @@ impl Dialect {
 }
 
 fn cell(text: Option<&str>) -> &str {
-    // A missing cell counts as an empty one.
-    let text = text.unwrap_or_default().trim();
+    let text = text.unwrap_or("").trim();
     text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).map_or(text, str::trim)
 }
 
@@ -104,8 +103,7 @@ fn blanks(line: &str) -> Vec<&str> {
     let mut end = 0;
     for (at, sign) in line.char_indices().chain([(line.len(), ' ')]) {
         if sign.is_whitespace() && depth <= 0 {
-            // At the end of the line nothing follows.
-            let rest = line.get(at..).unwrap_or_default().trim_start();
+            let rest = line[at..].trim_start();
             // In a line of units each bracket is a cell of its own.
             let bracket = |from: usize| line.get(from..).is_some_and(|own| own.starts_with(['[', '(']));
             if let Some(from) = start.filter(|from| !rest.starts_with(['[', '(']) || bracket(*from)) {
@@ -149,8 +147,7 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     let lines: Vec<(u64, &str)> =
         all().filter(|(_, line)| !line.trim().is_empty() && comment(line).is_none()).collect();
     let told_from = lines.len().saturating_sub(TOLD_FROM).max(usize::from(lines.len() > 1));
-    // An empty text has no such lines.
-    let last = lines.get(told_from..).unwrap_or_default();
+    let (_, last) = lines.split_at(told_from);
     let dialect = tell(last);
     let (width, usual) = (usual_width(dialect, last), usual_numbers(dialect, last));
     let is_data = |line: &str| {
@@ -183,7 +180,7 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     let after = at + 1 + usize::from(units.is_some());
     let units = units.or_else(|| units_of_scope(dialect, above));
     // The header may be the last line.
-    let rows = lines.get(after..).unwrap_or_default();
+    let rows = lines.get(after..).unwrap_or(&[]);
     // Skips a rule of dashes below the header.
     let is_rule =
         |line: &str| line.trim().chars().all(|sign| "-=_+|".contains(sign)) && line.trim().len() > 2;
@@ -214,7 +211,6 @@ fn is_unit(cell: &str) -> bool {
 
 /// Returns the number of cells up to the last nonempty one.
 fn filled(cells: &[&str]) -> usize {
-    // Zero if all cells are empty.
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
 }
 
@@ -288,13 +284,12 @@ fn tell(lines: &[(u64, &str)]) -> Dialect {
     best.1.unwrap_or(lone.1)
 }
 
-/// Returns the most common of some counts, and the larger one of two that are equally common.
+/// Returns the most common of some counts, and the larger one of two that are equally common; 0 without any.
 fn most_common(counts: impl Iterator<Item = usize>) -> usize {
     let mut tally = std::collections::BTreeMap::new();
     for count in counts {
         *tally.entry(count).or_insert(0_usize) += 1;
     }
-    // Without lines there is no common count.
     tally.into_iter().max_by_key(|(count, lines)| (*lines, *count)).map_or(0, |(count, _)| count)
 }
 

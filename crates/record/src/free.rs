@@ -235,7 +235,6 @@ impl<'a> HalfSwings<'a> {
     fn is_break(&self, number: usize) -> bool {
         let height = |back: usize| number.checked_sub(back).and_then(|at| self.heights.get(at)).copied();
         let Some(before) = height(1) else { return false };
-        // After the last turning point nothing is seen to move.
         let after = height(0).unwrap_or(0.0);
         if before.max(after) < self.large || self.has_gap(number) {
             return false;
@@ -350,7 +349,6 @@ impl<'a> HalfSwings<'a> {
     /// Returns `true` if samples are missing for a quarter of a half swing beside a turning point.
     fn has_gap(&self, number: usize) -> bool {
         let turn = |number: usize| self.turns.get(number).map(|turn| turn.at);
-        // The first two turning points are preceded by the start of the record.
         let from = number.checked_sub(2).and_then(turn).unwrap_or(0);
         let to = turn(number + 1).unwrap_or(usize::MAX);
         self.times.iter().zip(self.usual).any(|(times, usual)| {

@@ -56,8 +56,7 @@ fn columns(text: &str, source: &Source) -> Vec<ColumnLook> {
     let reading = &source.reading;
     let roles =
         [("time", reading.time.as_ref()), ("value", Some(&reading.value)), ("input", reading.input.as_ref())];
-    // A text that is not a table was already refused by `read_text`.
-    let columns = Table::new(text).map(|table| table.columns).unwrap_or_default();
+    let columns = Table::new(text).into_iter().flat_map(|table| table.columns);
     let look = |column: crate::roles::Column| {
         let role =
             roles.iter().find(|(_, read)| read.is_some_and(|read| read.column == column.heading.title));

@@ -1,5 +1,10 @@
 //! Sample index with lost samples counted.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "there is a number for the end of every group, and a value for every row"
+)]
+
 use crate::line::{Bend, Line};
 use crate::roughness::off_cubic;
 use crate::statistics::extremes;
@@ -81,8 +86,7 @@ impl Numbers {
         let before = bend(ends, whole);
         let (counted, after) = best_count(ends, &sizes, whole)?;
         let interval = after.line.slope;
-        // Only called for groups of `counted`.
-        let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
+        let number = |at: usize| counted[at].0;
         let gaps: Vec<usize> = (1..counted.len())
             .filter(|&at| number(at) - number(at - 1) > sizes.get(at - 1).copied().unwrap_or(1.0) + 0.5)
             .collect();
@@ -116,9 +120,7 @@ fn are_alike(ends: &[(f64, f64)], sizes: &[f64]) -> bool {
 
 /// Fits a line with a bend to the complete groups.
 fn bend(ends: &[(f64, f64)], whole: usize) -> Bend {
-    debug_assert!(whole <= ends.len(), "{whole} whole groups of {}", ends.len());
-    // Always present: asserted above.
-    let ends = ends.get(..whole).unwrap_or_default();
+    let ends = &ends[..whole];
     Bend::of(&Line::through(ends), ends)
 }
 
@@ -155,8 +157,7 @@ fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     let line = Line::through(ends);
     let late: Vec<f64> = line.residuals.iter().map(|residual| residual / line.slope).collect();
     for (at, late) in late.iter().enumerate().take(whole.saturating_sub(1)).skip(1) {
-        // Only called for complete groups, which are fewer than all.
-        let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
+        let number = |at: usize| counted[at].0;
         let lost = |at: usize| number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         let more =
             if late.abs() > 0.5 * LATENESS { late.round().min(lost(at + 1)).max(-lost(at)) } else { 0.0 };
@@ -187,21 +188,13 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     let mut sums = [0.0; 4];
     let mut best = (-2.0 * (whole as f64).ln() / 12.0, 0, 0.0);
     for at in (1..whole).rev() {
-        debug_assert!(
-            [&residuals, &linear, &bent].iter().all(|series| series.len() == whole),
-            "one entry a group"
-        );
-        // Always present: asserted above.
-        let here = |series: &[f64]| series.get(at).copied().unwrap_or_default();
-        let terms = [here(&residuals) / interval, constant, here(&linear), here(&bent) / length];
+        let terms = [residuals[at] / interval, constant, linear[at], bent[at] / length];
         for (sum, term) in sums.iter_mut().zip(terms) {
             *sum += term;
         }
         let [residual, level, slope, curve] = sums;
         let step = (whole - at) as f64 - level * level - slope * slope - curve * curve;
-        // Only called for complete groups, which are fewer than all.
-        let number = |at: usize| ends.get(at).map_or(0.0, |end| end.0);
-        let lost = number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
+        let lost = ends[at].0 - ends[at - 1].0 - sizes.get(at - 1).copied().unwrap_or(1.0);
         for more in [1.0, -1.0] {
             let change = step - 2.0 * more * residual;
             if change < best.0 && lost + more > -0.5 {
@@ -268,7 +261,7 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], rows: &[f64], values: &[f6
     let mut lost_before = 0.0;
     for (end, number) in ends.iter().zip(counted) {
         // Samples of the group and those that follow it.
-        let left = rows.get(numbers.len()..).unwrap_or_default();
+        let left = &rows[numbers.len()..];
         let (group, following) = left.split_at(left.partition_point(|row| *row <= end.0));
         let lost_here = number.0 - end.0;
         let numbered = |early: usize| {
@@ -280,18 +273,19 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], rows: &[f64], values: &[f6
             let from = numbers.len().saturating_sub(4);
             let past: Vec<f64> = numbers.iter().skip(from).copied().collect();
             let to = (numbers.len() + group.len() + 4).min(values.len());
-            // No values are known beyond the last sample.
-            let seen = values.get(from..to).unwrap_or_default();
+            let seen = &values[from..to];
             let roughness = |early: usize| {
                 let next = following.iter().take(4).map(|row| row + lost_here);
                 let times: Vec<f64> = past.iter().copied().chain(numbered(early)).chain(next).collect();
                 times.windows(5).zip(seen.windows(5)).map(|(t, y)| off_cubic(t, y).powi(2)).sum::<f64>()
             };
-            early = (0..=group.len())
-                .map(|early| (early, roughness(early)))
-                .min_by(|one, other| one.1.total_cmp(&other.1))
-                // There is always at least one candidate: all samples lost before the group.
-                .map_or(0, |best| best.0);
+            let mut least = roughness(0);
+            for candidate in 1..=group.len() {
+                let next = roughness(candidate);
+                if next.total_cmp(&least).is_lt() {
+                    (early, least) = (candidate, next);
+                }
+            }
         }
         numbers.extend(numbered(early));
         lost_before = lost_here;

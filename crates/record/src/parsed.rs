@@ -1,5 +1,7 @@
 //! Content of a file's text, before it becomes a record.
 
+#![allow(clippy::indexing_slicing, reason = "`Record::new` refuses a record without samples")]
+
 use crate::error::Fault;
 use crate::free::{FreeSwing, free_swings};
 use crate::options::ReadOptions;
@@ -65,9 +67,8 @@ impl Parsed {
     ) -> Result<(Record, Statements, Vec<String>, Reading), Fault> {
         let input = (!self.input.is_empty()).then_some(self.input);
         let quantity = options.quantity.unwrap_or(self.reading.quantity);
-        // Without samples the span is zero.
-        let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
         let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
+        let span = record.stamps_s()[record.len() - 1] - record.stamps_s()[0];
         let record = match self.rows {
             Some(rows) => record.with_rows(rows).with_input_rows(self.input_rows),
             None => record,

@@ -1,5 +1,7 @@
 //! The record: samples of one coordinate with their stamps.
 
+#![allow(clippy::indexing_slicing, reason = "the columns are as long as the stamps")]
+
 use crate::FEWEST_SAMPLES;
 use crate::error::Fault;
 use crate::lattice::Lattice;
@@ -137,7 +139,7 @@ impl Record {
     #[must_use]
     pub fn with_input_rows(self, rows: Vec<InputRow>) -> Self {
         // Without row numbers, or without an input, no row lies between samples.
-        let numbers = self.rows.as_deref().filter(|_| self.input.is_some()).unwrap_or_default();
+        let numbers = self.rows.as_deref().filter(|_| self.input.is_some()).unwrap_or(&[]);
         let is_between = |row: &InputRow| {
             let ends = beside(numbers, &self.stamps_s, row.row);
             ends.is_some_and(|[(_, from), (_, to)]| (from..=to).contains(&row.stamp_s))
@@ -187,8 +189,7 @@ impl Record {
             let found = to - from;
             return Err(Fault::EmptyPart { from_s, to_s, found, needed: FEWEST_SAMPLES, first_s, last_s });
         }
-        // The columns are as long as the stamps.
-        let cut = |column: &[f64]| column.get(from..to).unwrap_or_default().to_vec();
+        let cut = |column: &[f64]| column[from..to].to_vec();
         let rows = self.rows.as_deref().and_then(|rows| rows.get(from..to)).map(<[usize]>::to_vec);
         let part = Self {
             stamps_s: cut(&self.stamps_s),
@@ -211,7 +212,6 @@ impl Record {
     #[must_use]
     pub fn empty_rows(&self) -> usize {
         let ends = self.rows().and_then(|rows| rows.first().zip(rows.last()));
-        // If every row holds a sample, none is empty.
         ends.map_or(0, |(first, last)| last - first + 1 - self.len())
     }
 
@@ -268,7 +268,6 @@ impl Record {
     /// Returns the step that the values are rounded to, in their unit; 0 if they lie on no lattice.
     #[must_use]
     pub fn quantum(&self) -> f64 {
-        // Values without a lattice are not rounded.
         self.lattice().map_or(0.0, |lattice| lattice.step)
     }
 

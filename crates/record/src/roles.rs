@@ -79,8 +79,7 @@ pub(crate) fn quantity(heading: &Heading, options: &ReadOptions) -> Quantity {
         .quantity
         .or(unit.map(|unit| quantity_of(unit.order())))
         .or(observed(heading).map(|(quantity, _)| quantity))
-        // If neither a unit nor a name decides, the quantity is that of most logs.
-        .unwrap_or_default()
+        .unwrap_or(Quantity::Position)
 }
 
 /// Returns `true` if a column is a time by its name or its unit.

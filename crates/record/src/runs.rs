@@ -117,10 +117,11 @@ fn label(heading: &Heading) -> String {
         )
         .collect::<Vec<_>>()
         .join(" ");
-    let latest = heading.has("latest").then(|| "latest".to_owned());
+    if heading.has("latest") {
+        return "latest".to_owned();
+    }
     let digits = outside.split(|sign: char| !sign.is_ascii_digit()).rfind(|part| !part.is_empty());
-    // A title without either tells no run.
-    latest.or(digits.map(str::to_owned)).unwrap_or_default()
+    digits.unwrap_or("").to_owned()
 }
 
 #[cfg(test)]

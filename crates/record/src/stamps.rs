@@ -1,5 +1,7 @@
 //! Statistics of a record's stamps.
 
+#![allow(clippy::indexing_slicing, reason = "there is a number for the end of every group")]
+
 use crate::line::{Bend, Line};
 use crate::lost::Numbers;
 use crate::roughness::preference_for_even;
@@ -114,14 +116,14 @@ pub(crate) fn statistics(
         .map(|((one, next), step)| step - (next.0 - one.0 - 1.0) * line.slope)
         .collect();
     let usual = middle(&own);
-    let largest_group = stamps.chunk_by(|one, next| one == next).map(<[f64]>::len).max();
+    let largest_group = stamps.chunk_by(|one, next| one == next).map(<[f64]>::len).fold(0, usize::max);
     let repeated = stamps.len() - ends.len();
-    // Stamps that lie on no lattice are not rounded.
     // Steps of decimals are not exact: the last factor counts all of this length.
-    let long = (1.5 * usual + rounding_s.unwrap_or_default().min(0.5 * usual)) * (1.0 - 1e-9);
+    let longest = rounding_s.map_or(1.5 * usual, |step| 1.5 * usual + step.min(0.5 * usual));
+    let long = longest * (1.0 - 1e-9);
     debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
     // A record may end within a group, whose last sample is then missing.
-    let whole = numbers.ends.get(..ends.len() - usize::from(repeated > 0)).unwrap_or_default();
+    let whole = &numbers.ends[..ends.len() - usize::from(repeated > 0)];
     let bend = Bend::of(&Line::through(whole), whole);
     let even: Vec<f64> = numbers.of_samples.iter().map(|number| line.slope * number).collect();
     let preference = if repeated == 0 { preference_for_even(stamps, values, &even) } else { 0.0 };
@@ -131,8 +133,7 @@ pub(crate) fn statistics(
     StampStatistics {
         repeated,
         groups: ends.len(),
-        // A record has samples, so there is a group.
-        largest_group: largest_group.unwrap_or_default(),
+        largest_group,
         group_interval_s: middle(&steps),
         gaps: if is_scatter { 0 } else { gaps },
         rounding_s,
@@ -147,9 +148,8 @@ pub(crate) fn statistics(
     }
 }
 
-/// Returns the upper median of the steps between groups.
+/// Returns the upper median of the steps between groups; 0 without a step.
 fn middle(steps: &[f64]) -> f64 {
-    // There are at least two groups, so there is a step.
     upper_median(steps.to_vec()).unwrap_or_default()
 }
 

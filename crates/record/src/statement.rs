@@ -41,8 +41,7 @@ impl Origin {
     #[must_use]
     pub fn shared(origins: impl IntoIterator<Item = Self>) -> Self {
         let mut origins = origins.into_iter();
-        // Without records nothing is stated.
-        let first = origins.next().unwrap_or_default();
+        let Some(first) = origins.next() else { return Self::Unstated };
         if origins.all(|other| other == first) { first } else { Self::Unstated }
     }
 }

@@ -46,7 +46,8 @@ pub fn noise_level(values: &[f64]) -> f64 {
             _ => None,
         })
         .collect();
-    // The median size of a Gaussian is 0.6745 standard deviations. Fewer than five values have no fourth
-    // difference.
-    median(sizes).unwrap_or(0.0) / 0.674_489_750_196_081_7 / 70_f64.sqrt()
+    // Fewer than five values have no fourth difference.
+    let Some(size) = median(sizes) else { return 0.0 };
+    // The median size of a Gaussian is 0.6745 standard deviations.
+    size / 0.674_489_750_196_081_7 / 70_f64.sqrt()
 }

@@ -83,7 +83,7 @@ impl<'a> Table<'a> {
         let (mut known, mut found) = (BTreeSet::new(), Vec::new());
         for (_, row) in &self.layout.rows {
             // A row that ends before the column has an empty cell there.
-            let value = self.layout.dialect.split(row).get(at).copied().unwrap_or_default();
+            let value = self.layout.dialect.split(row).get(at).copied().unwrap_or("");
             if !value.is_empty() && known.insert(value) {
                 found.push(value);
             }
@@ -112,8 +112,7 @@ impl<'a> Table<'a> {
             column: self.title(at).to_owned(),
             count: values.len(),
             values: values.join(", "),
-            // Without a value there is no example.
-            example: values.first().copied().unwrap_or_default().to_owned(),
+            example: values.first().copied().unwrap_or("").to_owned(),
         })
     }
 

@@ -31,8 +31,7 @@ impl Stamp {
         let Some(exact) = exact.filter(|_| value.abs() >= 1e6) else {
             return Some(Self { whole: 0, fraction: value });
         };
-        // Digits only, as checked above, so this parses as a number.
-        let part = format!("0.{fraction}0").parse().unwrap_or(0.0);
+        let part: f64 = format!("0.{fraction}0").parse().ok()?;
         Some(Self { whole: exact, fraction: if value < 0.0 { -part } else { part } })
     }
 

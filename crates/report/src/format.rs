@@ -225,8 +225,7 @@ fn decimals_for(value: f64, std_error: f64) -> usize {
 
 /// Returns decimal places: zero if a number ends before its decimal point.
 fn places(wanted: i32) -> usize {
-    // Only a negative number fails to convert.
-    usize::try_from(wanted).unwrap_or(0)
+    wanted.max(0) as usize
 }
 
 /// Returns the decimal exponent of a value rounded to `digits` significant digits, so that 9.96 to two digits
@@ -239,7 +238,6 @@ fn exponent_after_rounding(value: f64, digits: usize) -> i32 {
 /// Splits `"1.5e-7"` into `("1.5", -7)`.
 fn split_exponent(text: &str) -> (&str, i32) {
     match text.split_once('e') {
-        // The exponent was written by this program, so it parses.
         Some((mantissa, exponent)) => (mantissa, exponent.parse().unwrap_or(0)),
         None => (text, 0),
     }

@@ -113,8 +113,7 @@ impl Along {
 
     /// Returns the largest number of samples on each side that a smoothed one depends on.
     pub(crate) fn width(&self) -> usize {
-        // Without joints there is nothing to smooth.
-        self.joints.iter().map(|own| own.half_width).max().unwrap_or(0)
+        self.joints.iter().map(|own| own.half_width).fold(0, usize::max)
     }
 
     /// Returns the motion of all joints at sample `at` of `joint`, which is at `time`.
@@ -141,11 +140,11 @@ impl Along {
     #[must_use]
     pub fn state(&self, time: f64) -> State {
         let joints = self.joints.iter().zip(&self.recording.joints);
-        // A channel has samples: its length was checked.
-        let at = |values: &[f64], times: &[f64]| interpolated(times, values, time).unwrap_or(0.0);
-        let (position, velocity) = joints
-            .map(|(own, channel)| (at(&own.position, &channel.times), at(&own.velocity, &channel.times)))
-            .unzip();
+        let of = |(own, channel): (&Smoothed, &crate::recording::Channel)| {
+            let at = |values: &[f64]| interpolated(&channel.times, values, time);
+            Some((at(&own.position)?, at(&own.velocity)?))
+        };
+        let (position, velocity) = joints.filter_map(of).unzip();
         State { position, velocity }
     }
 }

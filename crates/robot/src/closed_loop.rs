@@ -102,8 +102,7 @@ pub fn closed_loop(
             break;
         }
         let drive = |time: f64| -> Vec<f64> {
-            // A channel has samples: its length was checked.
-            torques.iter().map(|(times, own)| interpolated(times, own, time).unwrap_or(0.0)).collect()
+            torques.iter().filter_map(|(times, own)| interpolated(times, own, time)).collect()
         };
         let start = along.state(begin);
         starts.push((begin, start.clone()));

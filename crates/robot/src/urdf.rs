@@ -185,7 +185,7 @@ impl Urdf {
             });
         }
         let of = |name: &&str| armatures.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
-        // A joint that is not named has no rotor, as in the URDF.
+        // A joint that is not named has no rotor.
         let values: Vec<f64> = names.iter().map(|name| of(name).unwrap_or(0.0)).collect();
         let tree = self.model.tree.clone().with_armatures(&values);
         let file = "--armature".to_owned();

@@ -176,7 +176,7 @@ fn host() -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{LOCK, Lock};
+    use super::{LOCK, Lock, RunError};
     use crate::disk::Disk;
 
     #[test]
@@ -204,7 +204,8 @@ mod tests {
         assert!(Lock::claim(&disk, &path).unwrap().is_none());
         drop(first);
         assert!(Lock::claim(&disk, &path).unwrap().is_some());
-        assert!(Lock::claim(&disk, &folder.path().join("absent/case.lock")).is_err());
+        let absent = Lock::claim(&disk, &folder.path().join("absent/case.lock")).map(|_| ()).unwrap_err();
+        assert!(matches!(absent, RunError::Io { action: "open", .. }), "{absent}");
     }
 
     #[test]

@@ -42,22 +42,29 @@ fn open(content: &[u8]) -> Result<Vec<u8>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{open, seal};
+    use super::{MARK, open, seal};
 
     #[test]
     fn every_flipped_bit_and_every_cut_is_noticed() {
         for bytes in [&b""[..], b"x", b"parameters, optimizer, step, generator, trace"] {
             let sealed = seal(bytes);
             assert_eq!(open(&sealed).unwrap(), bytes);
+            let head = sealed.len() - bytes.len();
             for at in 0..sealed.len() {
-                assert!(open(&sealed[..at]).is_err());
+                let says = match at {
+                    at if at < MARK.len() => "does not begin as a checkpoint",
+                    at if at < head => "ends within its head",
+                    _ => "do not have the digest",
+                };
+                assert!(open(&sealed[..at]).unwrap_err().contains(says), "{at}");
                 for bit in 0..8 {
                     let mut flipped = sealed.clone();
                     flipped[at] ^= 1 << bit;
-                    assert!(open(&flipped).is_err(), "byte {at} bit {bit}");
+                    let says = if at < MARK.len() { "as a checkpoint" } else { "do not have the digest" };
+                    assert!(open(&flipped).unwrap_err().contains(says), "byte {at} bit {bit}");
                 }
             }
-            assert!(open(&[&sealed[..], b"\n"].concat()).is_err());
+            assert!(open(&[&sealed[..], b"\n"].concat()).unwrap_err().contains("do not have the digest"));
         }
     }
 }

@@ -36,8 +36,7 @@ pub fn generate(truth: &Truth) -> Result<Record, GenerationError> {
         return refused("number of decimals", f64::from(most), "0 to 12");
     }
     let times: Vec<f64> = (0..sampling.samples).map(|index| index as f64 / sampling.rate_hz).collect();
-    // Fewer than two samples are rejected above.
-    let duration = times.last().copied().unwrap_or_default();
+    let duration = (sampling.samples - 1) as f64 / sampling.rate_hz;
     let input = truth
         .excitation
         .map(|excitation| {
@@ -116,8 +115,7 @@ pub fn csv_text(record: &Record, stamp_decimals: u8, value_decimals: u8) -> Stri
     text.push_str("# origin: simulated\n# Made by a program: no sensor was involved.\n");
     text.push_str(&format!("time_s,{column}"));
     text.push_str(if record.input().is_some() { ",torque_nm\n" } else { "\n" });
-    // Without an input there is no column for it.
-    let mut inputs = record.input().unwrap_or_default().iter();
+    let mut inputs = record.input().into_iter().flatten();
     for (stamp, value) in record.stamps_s().iter().zip(record.values()) {
         // Writing to a string cannot fail.
         let _ = match inputs.next() {

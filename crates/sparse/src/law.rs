@@ -1,5 +1,7 @@
 //! Fitted law of the envelope's dynamics.
 
+#![allow(clippy::indexing_slicing, reason = "an envelope has at least three peaks")]
+
 use crate::scaled::Scaled;
 use crate::term::Term;
 
@@ -91,9 +93,7 @@ impl Law {
 
     /// Returns x at the first peak.
     pub fn start(&self) -> f64 {
-        debug_assert!(!self.trajectory.is_empty(), "an envelope has at least three peaks");
-        // Never absent: asserted above.
-        self.trajectory.first().copied().unwrap_or(0.0)
+        self.trajectory[0]
     }
 
     /// Returns the largest absolute difference in x between the trajectory and another one at the same peaks.

@@ -69,8 +69,7 @@ pub fn prepare(study: &PredictionStudy, problem: &Problem) -> Result<Result<Read
         ProblemSource::Record { data, .. } => Ok(Err(Missing {
             id: problem.id.clone(),
             title: problem.title.clone(),
-            // An origin that nobody stated is `unstated`.
-            origin: data.statements().origin.unwrap_or_default(),
+            origin: data.statements().origin.unwrap_or(Origin::Unstated),
             reason: missing(&problem.id, data),
         })),
     }

@@ -149,8 +149,7 @@ fn examine(
     let mut found = ProblemStudy {
         unit: ready.unit.clone(),
         peaks: envelope.len(),
-        // An envelope without a peak was refused when it was made.
-        duration_s: envelope.times_s().last().copied().unwrap_or_default(),
+        duration_s: envelope.duration_s(),
         data: ready.data.clone(),
         law: ready.truth.as_ref().map(|truth| truth.law.clone()),
         exponential,

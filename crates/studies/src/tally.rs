@@ -57,8 +57,7 @@ pub(crate) fn outcome(
     let of = |kind| score(problem, trials, kind, common, Some(exponential));
     let (equation, commonest_form) = laws(problem, trials);
     PredictionOutcome::Scored(Box::new(MethodScores {
-        // Without trials there are no draws.
-        draws: trials.iter().map(|placed| placed.draw + 1).max().unwrap_or(0),
+        draws: trials.iter().map(|placed| placed.draw + 1).fold(0, usize::max),
         failed_fits: trials.iter().filter(|placed| placed.trial.is_err()).count(),
         first_failure,
         fits: trials.len(),

@@ -133,10 +133,9 @@ fn methods(count: usize) -> String {
 }
 
 fn listed(names: &[String]) -> String {
-    // The range never exceeds the length of the list.
-    let shown = names.get(..names.len().min(MOST_NAMES)).unwrap_or_default().join(", ");
-    match names.len().saturating_sub(MOST_NAMES) {
-        0 => shown,
-        rest => format!("{shown} and {rest} more"),
+    let (shown, rest) = names.split_at(names.len().min(MOST_NAMES));
+    match rest.len() {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
     }
 }

@@ -28,8 +28,7 @@ pub fn events(run: &Finished) -> Vec<u8> {
         }
     }
     let ends = run.curves.iter().filter_map(|curve| curve.points.last());
-    // A run without curves has its results at step 0.
-    let last = ends.map(|(step, _)| *step).max().unwrap_or(0);
+    let last = ends.map(|(step, _)| *step).fold(0, i64::max);
     for (name, value) in &run.metrics {
         let tag = format!("result/{}", name.replace('.', "/"));
         frame(&mut file, &event(time, last, &scalar(&tag, *value)));

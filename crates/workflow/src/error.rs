@@ -138,10 +138,9 @@ pub enum WorkflowError {
 /// `data.time_unit` becomes --time-unit.
 #[must_use]
 pub fn in_options(text: &str) -> String {
-    let mut parts = text.split("`data.");
-    // Splitting returns at least one part.
-    let mut told = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
+    let Some((before, rest)) = text.split_once("`data.") else { return text.to_owned() };
+    let mut told = before.to_owned();
+    for part in rest.split("`data.") {
         let (key, rest) = part.split_once('`').unwrap_or((part, ""));
         told.push_str(&format!(
             "--{}{rest}",

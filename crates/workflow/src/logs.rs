@@ -98,10 +98,10 @@ pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
 #[must_use]
 pub fn left_out(path: &Path) -> Option<String> {
     let tables = of(&entries(path).ok()?, TABLES);
-    // A file in a folder has a name.
-    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = |path: &PathBuf| Some(path.file_name()?.to_string_lossy().into_owned());
     let (raw, others): (Vec<&PathBuf>, Vec<&PathBuf>) = tables.iter().partition(|path| is_raw(path));
-    let [raw, others] = [raw, others].map(|files| files.into_iter().map(name).collect::<Vec<_>>().join(", "));
+    let [raw, others] =
+        [raw, others].map(|files| files.into_iter().filter_map(name).collect::<Vec<_>>().join(", "));
     (!raw.is_empty() && !others.is_empty()).then(|| {
         format!(
             "only {raw} was read, since the tables beside it are computed from it: {others}; to read one of those, name the file"
@@ -110,9 +110,10 @@ pub fn left_out(path: &Path) -> Option<String> {
 }
 
 fn is_raw(path: &Path) -> bool {
-    // A path without a name is that of no file.
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    RAW.iter().any(|raw| name.starts_with(raw))
+    path.file_name().is_some_and(|name| {
+        let name = name.to_string_lossy().to_lowercase();
+        RAW.iter().any(|raw| name.starts_with(raw))
+    })
 }
 
 /// Returns the entries of a folder that are not hidden, sorted by name.
@@ -131,8 +132,7 @@ fn entries(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 /// Selects the logs among the entries of a folder.
 fn among(entries: &[PathBuf]) -> Vec<PathBuf> {
     let kinds = [TABLES, TEXTS, DOCUMENTS].into_iter().map(|endings| of(entries, endings));
-    // A folder without a file of these kinds holds no log.
-    let mut found = kinds.into_iter().find(|found| !found.is_empty()).unwrap_or_default();
+    let Some(mut found) = kinds.into_iter().find(|found| !found.is_empty()) else { return Vec::new() };
     if found.iter().any(|path| is_raw(path)) {
         found.retain(|path| is_raw(path));
     }
@@ -163,9 +163,7 @@ fn elsewhere(folder: &str, entries: &[PathBuf]) -> String {
 }
 
 fn ends_in(path: &Path, endings: &[&str]) -> bool {
-    // A file without an extension is not a log.
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    endings.contains(&ending.as_str())
+    path.extension().is_some_and(|own| endings.contains(&own.to_string_lossy().to_lowercase().as_str()))
 }
 
 #[cfg(test)]

@@ -333,8 +333,7 @@ impl Question {
             _ => 1,
         };
         let file = record.checked_sub(1).and_then(|index| self.given.get(index));
-        // An error in a question without a record names no file.
-        let file = file.map(|given| given.row.path.clone()).unwrap_or_default();
+        let file = file.map_or_else(String::new, |given| given.row.path.clone());
         WorkflowError::Diagnosis { file, source }
     }
 }

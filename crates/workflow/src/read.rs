@@ -170,7 +170,6 @@ impl Loaded {
         let (clock, believed) = (self.believed()?, self.clock_of(ClockChoice::Auto)?);
         let stated = Statements { origin: self.origin, ..Statements::default() };
         let summary = DataSummary::new(record, &self.source, &clock, &believed, stated);
-        let (first, last) = (clock.times_s.first(), clock.times_s.last());
         Ok(Given {
             observations: Observations::new(record, &clock),
             row: RecordRow {
@@ -178,8 +177,7 @@ impl Loaded {
                 digest: summary.digest,
                 origin: summary.origin,
                 samples: summary.samples,
-                // A record without samples has a duration of zero.
-                duration_s: first.zip(last).map_or(0.0, |(first, last)| last - first),
+                duration_s: clock.duration_s(),
                 clock: summary.clock,
                 clock_reason: summary.clock_reason,
                 findings: summary
@@ -216,8 +214,7 @@ impl Loaded {
 fn header(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
-    // A file of comments has no header.
-    lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default().to_owned()
+    lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or("").to_owned()
 }
 
 /// Converts a record's coordinate into the simulator's.
@@ -259,7 +256,6 @@ fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(),
 pub fn centered(record: &Record) -> Result<Record, Fault> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let value = mean(record.values());
-    // Without an input, zero is subtracted.
     let input = record.input().map_or(0.0, mean);
     record.mapped(|own| own - value, |own| own - input)
 }

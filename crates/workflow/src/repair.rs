@@ -1,5 +1,10 @@
 //! Repaired simulator: the recalibrated simulator with the fitted effects.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "a diagnosis has a state for every sample, and refuses records without"
+)]
+
 use crate::read::{Given, observed};
 use crate::result::title;
 use diagnosis::{Diagnosis, StartState, rounded};
@@ -56,11 +61,9 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     // Uncertainty that the sensor's noise leaves in a position, and in a velocity over a swing or the record.
     let per_second = system.nominal().angular_frequency().max(1.0 / seconds);
     let at_rate = noise * per_second;
-    // A diagnosis without samples was refused before.
-    let first_of = |values: &[f64]| values.first().copied().unwrap_or_default();
     let start = own.start.clone().unwrap_or_else(|| StartState {
-        position: first_of(&found.series.position),
-        velocity: first_of(&found.series.velocity),
+        position: found.series.position[0],
+        velocity: found.series.velocity[0],
         hidden: Vec::new(),
     });
     // A hidden body's state is known less well than the first body's: its digits suffice.
@@ -74,8 +77,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
         input: own.input_hold,
         start: Start { position: rounded(start.position, noise), velocity: rounded(start.velocity, at_rate) },
         hidden_starts: start.hidden.into_iter().map(|(id, states)| (id, hidden(states))).collect(),
-        // Without a record the observed quantity is unknown; an angle is assumed, as elsewhere.
-        observed: observed(first.map(|given| given.quantity).unwrap_or_default()),
+        observed: observed(first.map_or(record::Quantity::Position, |given| given.quantity)),
         noise: rounded(noise, OF_NOISE * noise),
         rate_hz: rounded(rate_hz, OF_TIME * rate_hz),
         seconds: rounded(seconds, OF_TIME * seconds),

@@ -30,8 +30,7 @@ pub(crate) struct Beside<'a> {
 /// Builds the content of `diagnosis.json`.
 pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult {
     let first = beside.given.first();
-    // Without a record the observed quantity is unknown; an angle is assumed, as elsewhere.
-    let quantity = first.map(|given| given.quantity).unwrap_or_default();
+    let quantity = first.map_or(record::Quantity::Position, |given| given.quantity);
     let units = beside.repaired.units;
     let mut result = DiagnosisResult {
         schema: DIAGNOSIS_SCHEMA.to_owned(),
@@ -50,8 +49,10 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             .iter()
             .map(|given| &given.modes)
             .find(|modes| !modes.is_empty())
+            .into_iter()
+            .flatten()
             .cloned()
-            .unwrap_or_default(), // Empty unless a record shows several.
+            .collect(),
         actuator: None,
         records: beside.given.iter().map(|given| given.row.clone()).collect(),
         nominal: beside.nominal.to_owned(),

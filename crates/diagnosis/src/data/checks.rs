@@ -35,7 +35,6 @@ pub(crate) fn check(
         });
     }
     let span = span(&record.values);
-    // A sensor without a stated resolution counts as one that does not round.
     let resolution = record.resolution.or(simulator.nominal().sensor_resolution()).unwrap_or(0.0);
     if span <= 3.0 * resolution || span <= 0.0 {
         return Err(DiagnosisError::NoMotion { record: number, span, resolution, unit: record.unit });
@@ -65,7 +64,6 @@ fn own_period(
     let nominal_s = TAU / omega;
     let (times, values) = (only(&record.times_s, kept), only(&record.values, kept));
     let swing = swing(&times, &values);
-    // A record without a swing has no cycles.
     let cycles = swing.map_or(0.0, |swing| swing.cycles);
     let spans = record.duration_s() / nominal_s;
     if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {

@@ -1,5 +1,8 @@
 //! Observations of one record, which are all that a diagnosis reads of it.
 
+#![allow(clippy::indexing_slicing, reason = "`Record::new` checks that there are samples")]
+
+use crate::noise::statistics::duration;
 use record::{Clock, ClockKind, Quantity, Record, StampStatistics};
 
 /// Observations of one record: times by the chosen clock, values and input. They hold neither a path nor an
@@ -36,8 +39,7 @@ const STEPS: usize = 3;
 /// Returns the indices of the samples that come after a gap in the rows. Rows that hold only an input fill a
 /// gap.
 fn after_gaps(record: &Record) -> Vec<usize> {
-    // A record that was not read from a file has no row numbers, and so no gaps.
-    let rows = record.rows().unwrap_or_default();
+    let Some(rows) = record.rows() else { return Vec::new() };
     let steps: Vec<usize> = rows.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
     let mut ordered = steps.clone();
     ordered.sort_unstable();
@@ -56,10 +58,7 @@ impl Observations {
     /// Creates the observations of a record, with times by the given clock.
     #[must_use]
     pub fn new(record: &Record, clock: &Clock) -> Self {
-        // A clock has a time for every sample, and a record has at least one sample.
-        let first = clock.times_s.first().copied().unwrap_or_default();
-        // There are as many stamps as times.
-        let stamp = record.stamps_s().first().copied().unwrap_or_default();
+        let (first, stamp) = (clock.start_s(), record.stamps_s()[0]);
         Self {
             times_s: clock.times_s.iter().map(|time| time - first).collect(),
             values: record.values().to_vec(),
@@ -123,8 +122,13 @@ impl Observations {
         self.input.as_deref()
     }
 
+    /// Returns the time from the first sample to the last, in seconds.
     pub(crate) fn duration_s(&self) -> f64 {
-        // An empty record lasts 0 s.
-        self.times_s.last().copied().unwrap_or_default()
+        duration(&self.times_s)
+    }
+
+    /// Returns the step of the readings; 0 if they lie on no lattice.
+    pub(crate) fn step(&self) -> f64 {
+        self.resolution.unwrap_or(0.0)
     }
 }

@@ -4,14 +4,15 @@
 //! segment of a few periods avoids this. Each segment is independent of what came before it, so that the fit
 //! finds the law and not the history.
 
+#![allow(clippy::indexing_slicing, reason = "`cut` checks that there are samples in every segment")]
+
 use crate::data::checks::{check, only, span};
 use crate::data::observations::Observations;
 use crate::data::pieces::{Piece, pieces};
 use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
-use crate::matrices::element;
 use crate::noise::periodogram::{dominant_frequency, share};
-use crate::noise::statistics::{median, quantile};
+use crate::noise::statistics::{duration, median, quantile};
 use dynamics::{Hold, Input, Nominal, NominalSimulator};
 use record::Quantity;
 use std::f64::consts::TAU;
@@ -46,7 +47,7 @@ const FEW_STEPS: f64 = 2.5;
 /// Part of its largest excursion above which a motion counts as visible.
 const VISIBLE: f64 = 0.02;
 
-/// Stretch of a record with a start state of its own.
+/// Stretch of a record with a start state of its own. It has at least one sample; [`cut`] checks it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Segment {
     /// Index of the record.
@@ -83,10 +84,12 @@ pub(crate) struct Data {
 impl Segment {
     /// Returns the time from the first sample to the last, in seconds.
     pub(crate) fn span(&self) -> f64 {
-        match self.times.as_slice() {
-            [first, .., last] => last - first,
-            _ => 0.0,
-        }
+        duration(&self.times)
+    }
+
+    /// Returns the time of the first sample, in seconds.
+    pub(crate) fn start_s(&self) -> f64 {
+        self.times[0]
     }
 
     /// Returns the sample ranges of the segments that this one was joined from.
@@ -130,8 +133,7 @@ impl Data {
     /// segment.
     fn spare(&self) -> usize {
         let per_period = TAU / (self.facts.frequency * self.facts.interval);
-        // Data without segments have nothing to spare.
-        let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
+        let Some(fewest) = self.segments.iter().map(|s| s.times.len()).min() else { return 1 };
         ((per_period / SEARCHED_PER_PERIOD) as usize).min(fewest / FEWEST_PER_SEGMENT).max(1)
     }
 
@@ -139,6 +141,7 @@ impl Data {
         let segments = self.segments.iter().map(|segment| Segment {
             times: segment.times.iter().copied().step_by(stride).collect(),
             values: segment.values.iter().copied().step_by(stride).collect(),
+            parts: segment.parts.iter().map(|at| at.div_ceil(stride)).collect(),
             ..segment.clone()
         });
         Self { segments: segments.collect(), ..self.clone() }
@@ -263,7 +266,7 @@ fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
 /// ends.
 ///
 /// A swing that comes to rest within less than one and a half segments is still cut into two. Of the rest
-/// that follows, only as much is kept as there was motion: a body at rest says only once what holds it.
+/// that follows, only as much is kept as there was motion, because further samples at rest add no information.
 fn cuts(
     record: &Observations,
     simulator: &NominalSimulator,
@@ -287,17 +290,14 @@ fn cuts(
     (count, record.duration_s() / count as f64, record.duration_s())
 }
 
-/// Returns the time at which the last visible motion ends, in seconds.
+/// Returns the time at which the last visible motion ends, in seconds; 0 if none is visible.
 fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
     // Fewer than ten samples have no last tenth; the rest position is then taken to be zero.
-    let last = values.get(values.len() - values.len() / 10..).unwrap_or_default();
-    let rest = median(last);
+    let rest = median(&values[values.len() - values.len() / 10..]);
     let span = values.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
-    // Without a stated resolution only the size of the motion counts.
-    let visible = (3.0 * record.resolution.unwrap_or(0.0)).min(0.5 * span).max(VISIBLE * span);
-    let moving = times.iter().zip(values).rev().find(|(_, value)| (**value - rest).abs() > visible);
-    // A motion that is never visible ends at time zero.
-    moving.map_or(0.0, |(time, _)| *time)
+    let visible = (3.0 * record.step()).min(0.5 * span).max(VISIBLE * span);
+    let moving = times.iter().zip(values).filter(|(_, value)| (**value - rest).abs() > visible);
+    moving.map(|(time, _)| *time).fold(0.0, f64::max)
 }
 
 /// Returns the largest of a number of every record, at least 0.
@@ -432,14 +432,12 @@ fn wave(points: &[(f64, f64)], omega: Option<f64>) -> ([f64; 3], f64) {
         Some(omega) => [1.0, (omega * time).cos(), (omega * time).sin()],
         None => [1.0, time, time * time],
     };
-    let design = nalgebra::DMatrix::from_fn(points.len(), 3, |row, column| {
-        // Rows and columns are those of the points; none is missing.
-        points.get(row).and_then(|(time, _)| columns(*time).get(column).copied()).unwrap_or(0.0)
-    });
+    let rows = points.iter().flat_map(|(time, _)| columns(*time));
+    let design = nalgebra::DMatrix::from_row_iterator(points.len(), 3, rows);
     let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));
     let svd = design.clone().svd(true, true);
     let fit = svd.solve(&right, 1e-12).unwrap_or_else(|_| nalgebra::DVector::zeros(3));
-    ([0, 1, 2].map(|index| element(&fit, index)), (right - design * fit).norm_squared())
+    ([0, 1, 2].map(|index| fit[index]), (right - design * fit).norm_squared())
 }
 
 /// Estimates position and velocity at the start of a segment: from a harmonic with an offset through its
@@ -453,8 +451,7 @@ fn guess(
     period_s: Option<f64>,
     simulator: &NominalSimulator,
 ) -> [f64; 2] {
-    // A segment has times; without any, the fit would start at zero.
-    let start = times.first().copied().unwrap_or_default();
+    let start = times[0];
     let omega = facts.frequency;
     let (rest, stiffness) = simulator.equilibrium();
     let reach = match period_s {

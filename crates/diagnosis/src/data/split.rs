@@ -1,5 +1,7 @@
 //! Short shooting intervals: pieces of segments, on which even a fit that begins far off finds its way.
 
+#![allow(clippy::indexing_slicing, reason = "pieces are ranges of their segment")]
+
 use crate::data::segments::{Data, Segment};
 use std::f64::consts::TAU;
 
@@ -28,9 +30,7 @@ impl Data {
             let begin: Vec<usize> = (0..count).map(|piece| piece * segment.times.len() / count).collect();
             let ends = begin.iter().skip(1).copied().chain([segment.times.len()]);
             for (from, to) in begin.iter().copied().zip(ends) {
-                // A piece is a range of its segment.
-                let pick = |list: &[f64]| list.get(from..to).map(<[f64]>::to_vec).unwrap_or_default();
-                let (times, values) = (pick(&segment.times), pick(&segment.values));
+                let (times, values) = (segment.times[from..to].to_vec(), segment.values[from..to].to_vec());
                 let first = segment.first && from == 0;
                 segments.push(Segment { first, times, values, parts: vec![0], ..segment.clone() });
             }

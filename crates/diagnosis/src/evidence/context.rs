@@ -1,5 +1,10 @@
 //! Context shared by the later stages: the fits, and comparisons between them.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "a fit has a global parameter for every calibrated number; there is a worth for every set"
+)]
+
 use crate::answer::Rivalry;
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
@@ -10,7 +15,6 @@ use crate::fit::fitted::{Fit, Point};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::significance::{OFF_BY_CHANCE, ratio, significant};
 use crate::fit::stopping::Stopping;
-use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::model::hypothesis::{Calibrated as Coefficient, Hypothesis};
@@ -103,8 +107,7 @@ impl<'a> Context<'a> {
     /// as much as the whole calibration does: this is a constant torque.
     pub(crate) fn shift(&self, repaired: &Fit) -> Option<Shift> {
         let own = &repaired.hypothesis;
-        // A set without effects has no parameters of effects.
-        let effects = repaired.point.globals.get(own.calibrated.len()..).unwrap_or_default();
+        let effects = &repaired.point.globals[own.calibrated.len()..];
         if !own.calibrated.contains(&Coefficient::RestAngle) {
             return None;
         }
@@ -131,7 +134,7 @@ impl<'a> Context<'a> {
             let freed = if has_both && allowed > 0.0 { with(both.to_vec()) } else { None };
             let is_the_clock = |freed: &Fit| {
                 // Two coefficients are moved: rest angle and stiffness.
-                let stiffness = freed.point.globals.get(1).copied().unwrap_or_default();
+                let stiffness = freed.point.globals[1];
                 (stiffness / own.nominal.stiffness() - 1.0).abs() < allowed
             };
             shifted = freed.filter(|freed| is_the_clock(freed) && is_all(freed))?;
@@ -147,8 +150,8 @@ impl<'a> Context<'a> {
         let nominal = &own.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
         // The rest angle is the first of the moved coefficients.
-        let angle = shifted.point.globals.first().copied().unwrap_or_default();
-        let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
+        let angle = shifted.point.globals[0];
+        let error = (shifted.squares / shifted.freedom() * time * shifted.inverse[(0, 0)]).sqrt();
         let reach = normal_above(0.025) * error;
         let interval_95 = [torque(angle - reach), torque(angle + reach)];
         Some(Shift { torque: WithInterval { value: torque(angle), interval_95 } })
@@ -161,9 +164,8 @@ impl<'a> Context<'a> {
         let Some(at) = own.calibrated.iter().position(|which| *which == Coefficient::RestAngle) else {
             return false;
         };
-        let variance = repaired.squares / repaired.freedom() * self.time * entry(&repaired.inverse, at, at);
-        // Every calibrated coefficient is among the globals.
-        let moved = repaired.point.globals.get(at).map_or(0.0, |angle| angle - own.nominal.rest_angle());
+        let variance = repaired.squares / repaired.freedom() * self.time * repaired.inverse[(at, at)];
+        let moved = repaired.point.globals[at] - own.nominal.rest_angle();
         moved.abs() > normal_above(0.5 * SHIFTED_BY_CHANCE) * variance.sqrt()
     }
 
@@ -236,8 +238,9 @@ impl<'a> Context<'a> {
     fn worths(&self, repaired: &Fit) -> Vec<Vec<f64>> {
         let count = repaired.hypothesis.candidates.len();
         // A set that was not fitted to the thin data leaves the whole gap to be explained.
-        let closest = self.thin.pool.find(&repaired.hypothesis.candidates).map_or(0.0, |own| own.squares);
-        let effort = Stopping::share((self.thin.calibrated.squares - closest).max(0.0));
+        let whole = self.thin.calibrated.squares;
+        let known = self.thin.pool.find(&repaired.hypothesis.candidates);
+        let effort = Stopping::share(known.map_or(whole, |own| whole - own.squares).max(0.0));
         let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
             .into_par_iter()
             .map(|set| {
@@ -265,15 +268,11 @@ impl<'a> Context<'a> {
         // A set explains at least as much as its subsets. If its own fit ended in a local minimum, the best
         // of theirs is taken.
         for set in 0..worths.len() {
-            // There is a worth for every set.
-            let total = |set: usize| worths.get(set).map_or(0.0, |own| own.iter().sum::<f64>());
+            let total = |set: usize| worths[set].iter().sum::<f64>();
             let subsets = (0..count).map(|member| set & !(1 << member));
             let best = subsets.max_by(|a, b| total(*a).total_cmp(&total(*b))).unwrap_or(set);
             if total(best) > total(set) {
-                let better = worths.get(best).cloned();
-                if let (Some(slot), Some(better)) = (worths.get_mut(set), better) {
-                    *slot = better;
-                }
+                worths[set] = worths[best].clone();
             }
         }
         worths

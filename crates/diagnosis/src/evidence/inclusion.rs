@@ -3,6 +3,8 @@
 //! The evidence for a class is that of the best set with it, minus that of the best set without it, in which
 //! all other effects may take its place. [`crate::evidence::weighed_sets`] defines the weights of the sets.
 
+#![allow(clippy::indexing_slicing, reason = "places are found among the parameters that they index")]
+
 use crate::answer::{EffectClass, Kind};
 use crate::data::segments::Data;
 use crate::evidence::context::{Predicted, Predictions};
@@ -14,7 +16,6 @@ use crate::evidence::weighed_sets::{Left, Records, WeighedSets};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
-use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::noise::statistics::{normal_above, resampled};
@@ -38,8 +39,7 @@ const PLAIN: usize = 2;
 pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let named = || weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty());
     let first: Vec<Candidate> =
-        // If nothing is named, the best set is empty.
-        named().next().map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
+        named().take(1).flat_map(|w| w.fit.hypothesis.candidates.iter().copied()).collect();
     let without =
         first.iter().filter_map(|own| named().find(|w| w.fit.hypothesis.lacks(own.evidence_class())));
     let mut asked: Vec<&'a Fit> = Vec::new();
@@ -165,9 +165,9 @@ impl<'a> Inclusion<'a> {
         without.any(|without| without.squares < UNCHANGED * with.squares)
     }
 
-    /// Returns `true` if the best set with a class has no member of it whose size is told from zero. The size of a
-    /// flexible effect is not asked: that of a stiff stop or a small body has no interval that a linearization
-    /// tells.
+    /// Returns `true` if no member of a class in the best set with it has a size significantly different from zero.
+    /// Flexible effects are not tested: a linearization gives no interval for the size of a stiff stop or a small
+    /// body.
     fn may_be_zero(&self, class: EvidenceClass) -> bool {
         let Some((with, _)) = self.first(&|fit| fit.hypothesis.holds(class)) else { return false };
         let (fit, facts) = (with.fit, &self.records.data.facts);
@@ -181,26 +181,26 @@ impl<'a> Inclusion<'a> {
             let Some(first) = place.filter(|_| !member.is_flexible()) else { return false };
             let parameters = member.parameters(facts);
             let is_size = |at: usize| parameters.get(at).is_some_and(|own| !own.shape);
-            let fitted = values.iter().enumerate().map(|(at, value)| {
-                (at, *value, (variance * entry(&fit.inverse, first + at, first + at)).sqrt())
-            });
-            // A torque may be told though its direction, and with it each of its components, is not.
+            let fitted = values
+                .iter()
+                .enumerate()
+                .map(|(at, value)| (at, *value, (variance * fit.inverse[(first + at, first + at)]).sqrt()));
+            // The size of a torque may be significant although its direction, and so each component, is not.
             let stated = member.values(values).into_iter().zip(fit.spread(member, first, values)).enumerate();
             let stated = stated.map(|(at, (value, error))| (at, value, error));
-            // A saturation is as large as its bound is small, and that is a shape: its center says nothing of it.
+            // The size of a saturation is the inverse of its bound, which is a shape; its center does not measure it.
             let has_size = parameters.first().is_some_and(|first| !first.shape);
             let mut sizes = fitted.chain(stated).filter(|(at, ..)| is_size(*at));
-            // Two sizes that can replace each other are told together: friction that grows with the load, or not.
+            // Sizes that can replace each other, as those of friction with and without load, are tested together.
             let places: Vec<usize> = (0..values.len()).filter(|at| is_size(*at)).collect();
-            let own =
-                DVector::from_iterator(places.len(), places.iter().filter_map(|at| values.get(*at).copied()));
-            let place = |at: usize| places.get(at).map_or(first, |own| first + own);
+            let own = DVector::from_iterator(places.len(), places.iter().map(|at| values[*at]));
+            let place = |at: usize| first + places[at];
             let covariance = DMatrix::from_fn(places.len(), places.len(), |row, column| {
-                variance * entry(&fit.inverse, place(row), place(column))
+                variance * fit.inverse[(place(row), place(column))]
             });
-            // Sizes without a covariance are told by nothing.
-            let distance = covariance.cholesky().map_or(0.0, |covariance| own.dot(&covariance.solve(&own)));
-            let together = TOGETHER.get(places.len()).is_some_and(|least| distance > *least);
+            let distance = covariance.cholesky().map(|covariance| own.dot(&covariance.solve(&own)));
+            let least = TOGETHER.get(places.len());
+            let together = distance.zip(least).is_some_and(|(distance, least)| distance > *least);
             has_size && !together && sizes.all(|(_, value, error)| !is_told(value, error))
         })
     }
@@ -289,8 +289,7 @@ impl<'a> Inclusion<'a> {
     /// have the member over that of all sets with the class. Several members can act at once.
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
         let with = || self.sets.weighed.iter().filter(|w| w.fit.hypothesis.holds(class));
-        // Without a set there is no member either.
-        let best = with().next().map_or(0.0, |w| w.evidence);
+        let Some(best) = with().next().map(|w| w.evidence) else { return Vec::new() };
         let odds = |w: &Weighed<'_>| (w.evidence - best).exp();
         let total: f64 = with().map(odds).sum();
         let mut members: Vec<(Candidate, f64)> = Vec::new();
@@ -310,7 +309,6 @@ impl<'a> Inclusion<'a> {
     /// Returns the probability that the system has a candidate, given its class.
     pub(crate) fn membership(&self, candidate: Candidate) -> f64 {
         let members = self.memberships(candidate.evidence_class());
-        // A candidate of no set has probability 0.
         members.iter().find(|(own, _)| *own == candidate).map_or(0.0, |(_, share)| *share)
     }
 
@@ -347,8 +345,7 @@ impl<'a> Inclusion<'a> {
 
     /// Returns the share of the draws of segments in which the best set has the class.
     fn stability(&self, class: EvidenceClass, seed: &Seed) -> f64 {
-        // Without sets nothing is drawn.
-        let segments = self.sets.left.first().map_or(0, |left| left.powers.len());
+        let Some(segments) = self.sets.left.first().map(|left| left.powers.len()) else { return 0.0 };
         let comes_back = resampled(segments, DRAWS, &seed.child("stability")).filter(|drawn| {
             let of = |(w, left): (&Weighed<'_>, &Left)| {
                 (self.sets.likelihood.log_of(&left.powers, drawn) - left.price, w.fit.hypothesis.holds(class))

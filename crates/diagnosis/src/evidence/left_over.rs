@@ -12,16 +12,17 @@
 //! likelihood ratio of two Gaussian variances against a common one. So noise of any color counts for nothing
 //! if its spectrum is smooth over a few bands, and few samples give little evidence.
 
+#![allow(clippy::indexing_slicing, reason = "there is a band for every half harmonic")]
+
 use crate::data::segments::{Data, PERIODS, Segment};
 use crate::evidence::discrepancy::basis;
 use crate::fit::fitted::Fit;
 use crate::linear::dictionary::{Acting, columns_of};
 use crate::linear::projection::Projection;
 use crate::linear::tangent::{Path, matrix};
-use crate::matrices::{element, entry};
 use crate::noise::high_pass::high_pass;
 use crate::noise::periodogram::below_images;
-use crate::noise::statistics::mean;
+use crate::noise::statistics::{duration, mean};
 use crate::residual::floor::without_rounding;
 use crate::residual::spectrum::steady;
 use dynamics::DynamicsError;
@@ -117,11 +118,7 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
 /// Returns stretches of the residual, with their times, that are long enough to resolve a harmonic from its
 /// neighbors: the unjoined segments or, if these are too short, the records.
 fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>)> {
-    let is_long = |times: &[f64]| {
-        // Without samples the span is zero.
-        let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-        span * data.facts.frequency >= 0.8 * TAU * PERIODS
-    };
+    let is_long = |times: &[f64]| duration(times) * data.facts.frequency >= 0.8 * TAU * PERIODS;
     let mut cut = Vec::new();
     let mut records: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     for (segment, residual) in data.segments.iter().zip(residuals) {
@@ -164,9 +161,7 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     let mut bands = vec![Band::default(); 2 * HARMONICS];
     let highest = below_images(data.interval());
     for (times, values) in stretches(data, residuals) {
-        // Without samples the span is zero.
-        let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-        let bin = TAU / length;
+        let bin = TAU / duration(&times);
         for (at, band) in bands.iter_mut().enumerate() {
             let middle = 0.5 * (at + 1) as f64 * data.facts.frequency;
             if middle + bin > highest {
@@ -187,17 +182,16 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
 /// number of squares that it is estimated from. No neighbor counts as quieter than `least`, the variance of known
 /// noise.
 fn outstanding(bands: &[Band], least: f64) -> (Unexplained, Band) {
-    // A missing band has no power.
-    let at = |index: Option<usize>| index.and_then(|i| bands.get(i)).copied().unwrap_or_default();
     let mut evidence: f64 = 0.0;
     let mut squares = 0.0;
     // Start states absorb noise in the swing's own band, so no other band is compared with it.
-    let lower = |index: usize| at(if index == SWING + 1 { Some(SWING - 1) } else { index.checked_sub(1) });
-    let upper = |index: usize| at(Some(if index + 1 == SWING { SWING + 1 } else { index + 1 }));
+    let lower = |index: usize| bands[if index == SWING + 1 { SWING - 1 } else { index - 1 }];
+    let upper = |index: usize| bands.get(if index + 1 == SWING { SWING + 1 } else { index + 1 });
     // The lowest band is skipped since it has no neighbor below: red noise would stand out there as much as a
     // slow torque.
     for (index, band) in bands.iter().enumerate().skip(1) {
-        let beside = lower(index).with(upper(index));
+        let below = lower(index);
+        let beside = upper(index).map_or(below, |above| below.with(*above));
         let own = larger(band.mean(), band.worth, beside.mean().max(least), beside.worth);
         evidence = evidence.max(own);
         if own > 0.0 {
@@ -205,7 +199,7 @@ fn outstanding(bands: &[Band], least: f64) -> (Unexplained, Band) {
         }
     }
     let evidence = (evidence - LOOKS.ln()).max(0.0);
-    (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
+    (Unexplained { evidence, squares: squares.max(0.0) }, bands[SWING - 1].with(bands[SWING + 1]))
 }
 
 /// Returns the excess of the steady line that stands out most in a spectrum, if it has noise on both sides.
@@ -281,11 +275,10 @@ fn taken(
     let largest = eigen.eigenvalues.max();
     let (mut squares, mut count) = (0.0, 0.0);
     for index in 0..eigen.eigenvalues.len() {
-        let value = element(&eigen.eigenvalues, index);
+        let value = eigen.eigenvalues[index];
         if value > DEPENDENT * largest && value > 0.0 {
-            let along: f64 = (0..scores.len())
-                .map(|row| entry(&eigen.eigenvectors, row, index) * element(&scores, row))
-                .sum();
+            let along: f64 =
+                (0..scores.len()).map(|row| eigen.eigenvectors[(row, index)] * scores[row]).sum();
             squares += along * along / value;
             count += 1.0;
         }

@@ -86,7 +86,6 @@ impl Learned {
         logistic(
             self.constant
                 + self.replacement * support
-                // Half swings that show nothing speak neither for nor against a class.
                 + self.half_swings * evidence.half_swings.map_or(0.0, compressed)
                 + self.error * log_ratio(ratio)
                 + if evidence.replacement >= most { self.leads * support } else { 0.0 }

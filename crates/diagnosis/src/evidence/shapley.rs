@@ -1,5 +1,7 @@
 //! Shapley values: what each of several causes contributes.
 
+#![allow(clippy::indexing_slicing, reason = "there is a worth for every set")]
+
 /// Computes the Shapley values of `count` players: the mean, over all orders in which they can join, of what
 /// each adds. `worth` maps a set, as bits, to its worth.
 ///
@@ -16,9 +18,7 @@ pub(crate) fn shapley(count: usize, worth: &dyn Fn(usize) -> f64) -> Vec<f64> {
                 .map(|set| {
                     let size = set.count_ones() as usize;
                     let weight = factorial(size) * factorial(count - size - 1) / factorial(count);
-                    // Every set has a worth.
-                    let at = |set: usize| worths.get(set).copied().unwrap_or(0.0);
-                    weight * (at(set | (1 << player)) - at(set))
+                    weight * (worths[set | (1 << player)] - worths[set])
                 })
                 .sum()
         })

@@ -70,8 +70,7 @@ impl<'a> WeighedSets<'a> {
         let residuals: Vec<Vec<DVector<f64>>> = sets.iter().map(|(fit, _)| records.residuals(fit)).collect();
         let square = |own: &&Vec<DVector<f64>>| own.iter().map(DVector::norm_squared).sum::<f64>();
         let closest = residuals.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
-        // Without sets there are no residuals.
-        let closest = closest.map(Vec::as_slice).unwrap_or_default();
+        let closest = closest.map_or(&[][..], Vec::as_slice);
         let noise = floor::floor(records.segments, closest).value;
         let likelihood = Likelihood::of(records.segments, closest, noise);
         let of = |((fit, held), own): (&(&'a Fit, &HeldOut), &Vec<DVector<f64>>)| {
@@ -92,7 +91,7 @@ impl<'a> WeighedSets<'a> {
             own.evidence = left.evidence(&likelihood);
         }
         let is_bare = |own: &&(Weighed<'_>, Left)| std::ptr::eq(own.0.fit, records.bare);
-        // Evidence is relative to the bare set, which is one of them.
+        // Evidence is relative to the bare set.
         let bare = all.iter().find(is_bare).map_or(0.0, |bare| bare.0.evidence);
         all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
         let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();

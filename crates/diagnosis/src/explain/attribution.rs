@@ -1,8 +1,10 @@
 //! Gap budget: shares of the gap by cause, which add up to 1.
 
+#![allow(clippy::indexing_slicing, reason = "columns are those of the dictionary")]
+
 use crate::evidence::shapley::shapley;
 use crate::linear::dictionary::Dictionary;
-use crate::matrices::{element, ridged, solve};
+use crate::matrices::{ridged, solve};
 use dynamics::Class;
 use nalgebra::DMatrix;
 use results::BudgetShares;
@@ -29,9 +31,7 @@ fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
     let products = dictionary.products.select_rows(&columns).select_columns(&columns);
     // Neighbors on a grid of shapes are nearly dependent; a small ridge distributes the gain among them.
     let products = ridged(&products, 0..columns.len(), 1e-4);
-    let scores =
-        DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&dictionary.scores, c)));
-    // Columns that cannot be told apart explain nothing more.
+    let scores = DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| dictionary.scores[c]));
     solve(&products, &scores).map_or(0.0, |solution| solution.dot(&scores).max(0.0))
 }
 

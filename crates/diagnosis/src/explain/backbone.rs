@@ -1,6 +1,8 @@
 //! Backbone curves and restoring-force surface of a system, computed from its series. They are plots for
 //! people; no verdict rests on them.
 
+#![allow(clippy::indexing_slicing, reason = "lobes and points are found among the samples that they index")]
+
 use crate::answer::Series;
 use dynamics::Coefficients;
 use record::Quantity;
@@ -85,12 +87,12 @@ pub fn surface(series: &Series, quantity: Quantity, coefficients: &Coefficients<
     let mut cells = vec![(0_usize, 0.0, 0.0); CELLS * CELLS];
     for segment in segments(series) {
         for index in segment.clone() {
-            let found = acceleration(series, segment.clone(), index, quantity, REACH * period);
-            // Indices are those of the segment.
-            let at = |list: &[f64]| list.get(index).copied().unwrap_or_default();
-            let Some(found) = found else { continue };
-            let (x, v) = (at(&series.position), at(&series.velocity));
-            let driven = found - at(&series.input_torque) / coefficients.inertia;
+            let Some(found) = acceleration(series, segment.clone(), index, quantity, REACH * period) else {
+                continue;
+            };
+            let state = series.position.get(index).zip(series.velocity.get(index));
+            let Some(((&x, &v), torque)) = state.zip(series.input_torque.get(index)) else { continue };
+            let driven = found - torque / coefficients.inertia;
             let spring = coefficients.stiffness * (x - coefficients.rest_angle);
             let missing = driven + (coefficients.damping * v + spring) / coefficients.inertia;
             let place = |value: f64, [low, high]: [f64; 2]| {
@@ -137,9 +139,9 @@ fn period(series: &Series) -> f64 {
             length += last - first;
             count += 1.0;
         }
-        // Segments lie within their series.
-        let speeds = series.velocity.get(segment).unwrap_or_default();
-        reversals += speeds.windows(2).filter(|pair| matches!(pair, [a, b] if a * b < 0.0)).count() as f64;
+        if let Some(speeds) = series.velocity.get(segment) {
+            reversals += speeds.array_windows().filter(|[a, b]| a * b < 0.0).count() as f64;
+        }
     }
     2.0 * length / f64::max(reversals, 2.0 * f64::max(count, 1.0))
 }
@@ -170,15 +172,14 @@ fn turning_points(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
 
 /// Returns the vertex of a parabola through the neighborhood of a lobe's extreme.
 fn turn(times: &[f64], values: &[f64], lobe: Range<usize>, middle: f64) -> Option<(f64, f64)> {
-    // Indices are those of the lobe.
-    let far = |index: &usize| values.get(*index).map_or(0.0, |value| (value - middle).abs());
-    let top = lobe.clone().max_by(|a, b| far(a).total_cmp(&far(b)))?;
-    let at = |index: usize| times.get(index).copied();
-    let reach = TURN * (at(lobe.end)? - at(lobe.start)?);
-    let center = at(top)?;
-    let near = |index: &usize| at(*index).is_some_and(|time| (time - center).abs() <= reach);
+    debug_assert!(times.len() == values.len() && lobe.end < values.len());
+    let far = |index: usize| (values[index] - middle).abs();
+    let top = lobe.clone().max_by(|&a, &b| far(a).total_cmp(&far(b)))?;
+    let reach = TURN * (times[lobe.end] - times[lobe.start]);
+    let center = times[top];
+    let near = |index: &usize| (times[*index] - center).abs() <= reach;
     let points: Vec<(f64, f64)> =
-        lobe.filter(near).filter_map(|index| Some((at(index)? - center, *values.get(index)?))).collect();
+        lobe.filter(near).map(|index| (times[index] - center, values[index])).collect();
     let [level, slope, bend, _] = cubic(&points, 2)?;
     let place = -slope / (2.0 * bend);
     (place.abs() <= reach).then(|| (center + place, level - slope * slope / (4.0 * bend)))
@@ -220,16 +221,13 @@ fn cubic(points: &[(f64, f64)], degree: usize) -> Option<[f64; 4]> {
         return None;
     }
     let values = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
-    let power =
-        // There is a row for every point.
-        |row: usize, power: usize| points.get(row).map_or(0.0, |(time, _)| (time / reach).powi(power as i32));
+    let power = |row: usize, power: usize| (points[row].0 / reach).powi(power as i32);
     let matrix = nalgebra::DMatrix::<f64>::from_fn(points.len(), degree + 1, power);
     let normal = matrix.tr_mul(&matrix).cholesky()?;
     let solved = normal.solve(&matrix.tr_mul(&values));
     let mut coefficients = [0.0; 4];
     for (power, coefficient) in coefficients.iter_mut().enumerate().take(degree + 1) {
-        // There is a solution for every power.
-        *coefficient = solved.get(power).copied().unwrap_or_default() / reach.powi(power as i32);
+        *coefficient = solved[power] / reach.powi(power as i32);
     }
     Some(coefficients)
 }

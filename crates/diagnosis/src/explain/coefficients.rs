@@ -1,11 +1,12 @@
 //! Coefficients with units and intervals, in the form that the answer reports.
 
+#![allow(clippy::indexing_slicing, reason = "callers find the index among the fit's own parameters")]
+
 use crate::answer::{Calibrated, KnownRow, ParameterEstimate};
 use crate::evidence::context::Context;
 use crate::evidence::determined::says_something;
 use crate::fit::fitted::Fit;
 use crate::fit::normal_equations::UNBOUNDED;
-use crate::matrices::entry;
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated as Coefficient, Known};
 use crate::noise::statistics::normal_above;
@@ -22,9 +23,7 @@ pub(crate) fn around(value: f64, error: f64) -> WithInterval {
 
 /// Returns the estimate and 95 % interval of a global parameter.
 pub(crate) fn interval(fit: &Fit, index: usize) -> WithInterval {
-    // Every global parameter has its place.
-    let value = fit.point.globals.get(index).copied().unwrap_or_default();
-    around(value, (fit.variance() * entry(&fit.inverse, index, index)).max(0.0).sqrt())
+    around(fit.point.globals[index], (fit.variance() * fit.inverse[(index, index)]).max(0.0).sqrt())
 }
 
 /// Returns a fit's estimates of the parameters of one effect; empty if the fit lacks the effect or holds it.
@@ -72,12 +71,15 @@ pub(crate) fn calibration(work: &Context<'_>, repaired: &Fit) -> Vec<Calibrated>
     let base = &work.base.calibrated;
     let coefficients = base.hypothesis.nominal.coefficients();
     let row = |which: Coefficient| {
-        let place = base.hypothesis.calibrated.iter().position(|own| *own == which);
-        let after = place.map(|place| interval(repaired, place));
+        let of = |fit: &Fit| {
+            let place = fit.hypothesis.calibrated.iter().position(|own| *own == which);
+            place.map(|place| interval(fit, place))
+        };
+        let after = of(repaired);
         Calibrated {
             name: which.name(),
             nominal: which.of(&coefficients),
-            recalibrated: place.map(|place| interval(base, place)),
+            recalibrated: of(base),
             repaired: after,
             determined: after.map(|after| says_something(&work.data.facts, which.quantity(), &after)),
         }

@@ -63,7 +63,6 @@ impl Parts<'_> {
     fn probability(&self, candidate: Candidate) -> f64 {
         let id = candidate.evidence_class().id();
         let class = self.classes.iter().find(|class| class.id == id);
-        // A class of which nothing was fitted has no probability.
         class.map_or(0.0, |class| class.probability * self.inclusion.membership(candidate))
     }
 
@@ -80,8 +79,7 @@ impl Parts<'_> {
     /// Returns the probability that the simulator lacks anything, from the evidence of the best set over the
     /// recalibrated simulator.
     fn incomplete(&self) -> f64 {
-        // The set without effects is among the sets and has no evidence over itself.
-        acts(self.inclusion.sets.weighed.first().map_or(0.0, |best| best.evidence))
+        acts(self.inclusion.sets.weighed.iter().map(|set| set.evidence).fold(0.0, f64::max))
     }
 
     /// Returns the probability that the simulator lacks something outside the vocabulary: something is left
@@ -146,8 +144,7 @@ fn verdicts(parts: &Parts<'_>) -> [EffectProbability; 3] {
     let coefficients = |torque: &Unnamed| parameters(parts.work, &torque.followed, Candidate::UNNAMED);
     [
         EffectProbability {
-            // Without a position-dependent torque there are no coefficients.
-            parameters: parts.unnamed.map(coefficients).unwrap_or_default(),
+            parameters: parts.unnamed.into_iter().flat_map(coefficients).collect(),
             gap_share: parts.unnamed.map(|torque| torque.share),
             ..plain("unknown", parts.unlisted())
         },
@@ -179,7 +176,7 @@ fn shifted(parts: &Parts<'_>, shift: Shift) -> EffectProbability {
 fn fitted(parts: &Parts<'_>, candidate: Candidate) -> EffectProbability {
     let place = parts.named().iter().position(|own| *own == candidate);
     // Named effects share what the position-dependent torque leaves.
-    let rest = 1.0 - parts.unnamed.map_or(0.0, |torque| torque.share.value);
+    let rest = parts.unnamed.map_or(1.0, |torque| 1.0 - torque.share.value);
     let of_named = |share: WithInterval| WithInterval {
         value: rest * share.value,
         interval_95: share.interval_95.map(|end| rest * end),
@@ -191,8 +188,7 @@ fn fitted(parts: &Parts<'_>, candidate: Candidate) -> EffectProbability {
     EffectProbability {
         id: candidate.id(),
         probability: parts.probability(candidate),
-        // A candidate in no fitted set has no coefficients.
-        parameters: source.map(|fit| parameters(parts.work, fit, candidate)).unwrap_or_default(),
+        parameters: source.into_iter().flat_map(|fit| parameters(parts.work, fit, candidate)).collect(),
         gap_share: place.and_then(|place| parts.shares.get(place)).map(|share| of_named(share.1)),
     }
 }
@@ -221,7 +217,7 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
         let probability = effects.iter().find(|row| row.id == id).map_or(SHOWN, |row| row.probability);
         match classes.iter_mut().find(|own| own.id == class) {
             Some(own) => {
-                // The fitted kinds had the class's probability to themselves before.
+                // So far the fitted kinds share the whole probability of the class.
                 for kind in &mut own.kinds {
                     kind.share *= own.probability;
                 }

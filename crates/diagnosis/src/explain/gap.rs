@@ -48,9 +48,8 @@ fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
     let samples = squares.iter().map(Vec::len).sum::<usize>();
     let worth = samples as f64 / floor.count.max(1) as f64;
     let own = |squares: &Vec<Option<f64>>| {
-        let filled: Vec<f64> =
-            // The mean stands for a sample without a difference.
-            squares.iter().map(|square| mean + worth * square.map_or(0.0, |square| square - mean)).collect();
+        let of = |square: &Option<f64>| square.map_or(mean, |square| mean + worth * (square - mean));
+        let filled: Vec<f64> = squares.iter().map(of).collect();
         by_block(&filled)
     };
     squares.iter().map(own).collect()

@@ -1,5 +1,10 @@
 //! Choice of the experiment that best separates two explanations.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "a fit has a start state of at least two entries for every segment; `cut` makes at least one"
+)]
+
 use crate::answer::Experiment;
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Fit, Point};
@@ -85,11 +90,8 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
     let mut then = Simulator::new(&planned, &model.hypothesis, &point, Derivatives::None)?;
     let rest = data.facts.rest(&model.point.globals, &model.hypothesis);
     let own: Vec<&Segment> = data.segments.iter().filter(|segment| segment.record == 0).collect();
-    // Without segments the motion begins at rest at zero.
-    let mut state: Vec<f64> = model.point.starts.first().cloned().unwrap_or_default();
-    if let Some(position) = state.first_mut() {
-        *position = rest + plan.release * (*position - rest);
-    }
+    let mut state = model.point.starts[0].clone();
+    state[0] = rest + plan.release * (state[0] - rest);
     let repeats = plan.length.ceil() as usize;
     let mut offset = 0.0;
     for _ in 0..repeats {

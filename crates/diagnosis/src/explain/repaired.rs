@@ -1,5 +1,7 @@
 //! Repaired simulator: the coefficients and effects of a fit, as numbers for another simulator.
 
+#![allow(clippy::indexing_slicing, reason = "matrices have a row and a column for every global parameter")]
+
 use crate::answer::{RepairedSimulator, StartState, Undetermined};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
@@ -9,7 +11,6 @@ use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::significance::{OFF_BY_CHANCE, significant};
 use crate::fit::stopping::Stopping;
-use crate::matrices::{entry, set};
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::sets::shooting_interval::ShootingInterval;
@@ -200,19 +201,18 @@ fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
     for (effect, place, fitted) in fit.hypothesis.all_parts(&data.facts, &fit.point.globals) {
         let Some(place) = place else { continue };
         for (row, column, slope) in effect.slopes(fitted) {
-            set(&mut change, place + row, place + column, slope);
+            change[(place + row, place + column)] = slope;
         }
     }
     let covariance = &change * &fit.inverse * change.transpose() * fit.variance();
     // Scaled to a unit diagonal before the inversion, because units differ by many orders of magnitude.
     let scale = covariance.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let at = |index: usize| scale.get(index).copied().unwrap_or(1.0);
-    let scaled = DMatrix::from_fn(count, count, |row, column| {
-        entry(&covariance, row, column) / (at(row) * at(column))
-    });
+    let scaled =
+        DMatrix::from_fn(count, count, |row, column| covariance[(row, column)] / (at(row) * at(column)));
     match scaled.try_inverse() {
         Some(precision) => {
-            (0..count).map(|index| at(index) / entry(&precision, index, index).max(1.0).sqrt()).collect()
+            (0..count).map(|index| at(index) / precision[(index, index)].max(1.0).sqrt()).collect()
         }
         None => vec![0.0; count],
     }
@@ -265,7 +265,7 @@ fn active(
         return Ok(*stated);
     }
     // A candidate that was not fitted has no errors.
-    let errors = place.and_then(|place| errors.get(place..)).unwrap_or_default().iter().copied();
+    let errors = place.into_iter().flat_map(|place| errors.iter().skip(place)).copied();
     let values = effect.values(fitted).into_iter().zip(errors.chain(std::iter::repeat(0.0)));
     let values: Vec<f64> = values.map(|(value, error)| rounded(value, error)).collect();
     if let Some(effect) = effect.system() {

@@ -1,7 +1,8 @@
 //! Starting point and result of a fit.
 
+#![allow(clippy::indexing_slicing, reason = "matrices have a row and a column for every global parameter")]
+
 use crate::data::segments::Data;
-use crate::matrices::{entry, set};
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::Hypothesis;
 use crate::noise::statistics::autocorrelation_time;
@@ -78,9 +79,9 @@ impl Fit {
         let count = fitted.len();
         let mut change = DMatrix::identity(count, count);
         for (row, column, slope) in candidate.slopes(fitted) {
-            set(&mut change, row, column, slope);
+            change[(row, column)] = slope;
         }
-        let own = DMatrix::from_fn(count, count, |i, j| entry(&self.inverse, at + i, at + j));
+        let own = DMatrix::from_fn(count, count, |i, j| self.inverse[(at + i, at + j)]);
         let covariance = &change * own * change.transpose() * self.variance();
         covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
     }

@@ -58,7 +58,7 @@ fn evaluate_below(
     for ((segment, start), weight) in segments.iter().zip(&point.starts).zip(weights) {
         let prediction = simulator.predict(segment, start).ok()?;
         total += weight * prediction.residual.norm_squared();
-        // A residual that is not a number is no gain either.
+        // A residual that is NaN is not a gain either.
         if total.is_nan() || total > bound {
             return None;
         }

@@ -2,8 +2,10 @@
 //! own samples, the global parameters affect all. Start states are eliminated segment by segment (Schur
 //! complement).
 
+#![allow(clippy::indexing_slicing, reason = "indices are those of the global parameters")]
+
 use crate::fit::fitted::Point;
-use crate::matrices::{element, entry, raised, set, solve};
+use crate::matrices::{raised, solve};
 use crate::model::candidate::Parameter;
 use crate::model::predictor::Prediction;
 use nalgebra::{DMatrix, DVector};
@@ -61,7 +63,7 @@ impl NormalEquations {
         let free: Vec<usize> =
             held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
         let part = matrix.select_rows(&free).select_columns(&free);
-        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| element(&right, i)));
+        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| right[i]));
         let mut step = DVector::zeros(right.len());
         if !free.is_empty() {
             let solution = solve(&part, &part_right)?;
@@ -148,18 +150,18 @@ pub(crate) const UNBOUNDED: f64 = 1e150;
 fn inverse(matrix: &DMatrix<f64>, plain: &DMatrix<f64>, parameters: &[Parameter]) -> Option<DMatrix<f64>> {
     let count = matrix.nrows();
     let is_open = |index: &usize| parameters.get(*index).is_none_or(|own| own.lower < own.upper);
-    let acts = |index: &usize| entry(plain, *index, *index) > 0.0;
+    let acts = |index: &usize| plain[(*index, *index)] > 0.0;
     let free: Vec<usize> = (0..count).filter(|index| is_open(index) && acts(index)).collect();
     let part = matrix.select_rows(&free).select_columns(&free);
     let inverse = solve(&part, &DMatrix::identity(free.len(), free.len()))?;
     let mut all = DMatrix::zeros(count, count);
     for (row, &i) in free.iter().enumerate() {
         for (column, &j) in free.iter().enumerate() {
-            set(&mut all, i, j, entry(&inverse, row, column));
+            all[(i, j)] = inverse[(row, column)];
         }
     }
     for index in (0..count).filter(|index| is_open(index) && !acts(index)) {
-        set(&mut all, index, index, UNBOUNDED);
+        all[(index, index)] = UNBOUNDED;
     }
     Some(all)
 }

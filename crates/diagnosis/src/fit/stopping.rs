@@ -174,8 +174,7 @@ impl Ending {
     /// Returns `true` if the remaining steps, each as good as the best of the last ones, would not reach the
     /// bound below which the fit is of use. `steps` is the number of steps made.
     pub(crate) fn is_in_vain(&self, squares: f64, steps: usize) -> bool {
-        // Nothing was gained before the first step.
-        let last = self.gains.get(self.gains.len().saturating_sub(LOOKED_AT)..).unwrap_or_default();
+        let (_, last) = self.gains.split_at(self.gains.len().saturating_sub(LOOKED_AT));
         let best = last.iter().copied().fold(0.0, f64::max);
         let left = self.effort.steps.saturating_sub(steps) as f64;
         steps >= FEWEST && last.len() == LOOKED_AT && squares * (1.0 - best).powf(left) > self.effort.below

@@ -1,11 +1,16 @@
 //! Dictionary of the first-order changes of the observed values by every candidate, at a fit.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "entries, columns and coefficients are indices of this dictionary"
+)]
+
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::linear::projection::Projection;
 use crate::linear::second_mode::driven_modes;
 use crate::linear::tangent::{Path, matrix, stack};
-use crate::matrices::{element, entry, solve};
+use crate::matrices::solve;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::{Lines, Mode};
 use crate::noise::periodogram::Line;
@@ -135,11 +140,10 @@ impl Dictionary {
             for shape in candidate.shapes_for(&data.facts, &shown) {
                 let by_path: Vec<Vec<Vec<f64>>> =
                     paths.iter().map(|path| columns(candidate, &shape, path, data, nominal)).collect();
-                // Without paths there is no column.
-                let count = by_path.first().map_or(0, Vec::len);
+                let count = by_path.iter().map(Vec::len).fold(0, usize::max);
                 let from = all.len();
                 for column in 0..count {
-                    all.push(by_path.iter().filter_map(|c| c.get(column)).flatten().copied().collect());
+                    all.push(by_path.iter().flat_map(|columns| &columns[column]).copied().collect());
                 }
                 let positive = candidate.is_non_negative();
                 entries.push(Entry { candidate, shape, columns: from..from + count, positive });
@@ -216,7 +220,7 @@ impl Dictionary {
             .flat_map(|entry| entry.columns.clone().map(|column| (column, entry.positive)))
             .collect();
         // A size that comes out negative is set to zero, and the others are solved for again.
-        let visible = |at: &usize| all.get(*at).is_some_and(|own| entry(&self.products, own.0, own.0) > 0.0);
+        let visible = |at: &usize| all.get(*at).is_some_and(|own| self.products[(own.0, own.0)] > 0.0);
         let mut kept: Vec<usize> = (0..all.len()).filter(visible).collect();
         let solution = loop {
             let columns: Vec<usize> = kept.iter().filter_map(|&at| all.get(at).map(|own| own.0)).collect();
@@ -224,14 +228,12 @@ impl Dictionary {
                 return None;
             }
             let products = self.products.select_rows(&columns).select_columns(&columns);
-            let scores =
-                DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&self.scores, c)));
+            let scores = DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| self.scores[c]));
             let solution = solve(&products, &scores)?;
             let below = |(place, at): (usize, &usize)| {
                 let positive = all.get(*at).is_some_and(|own| own.1);
-                // There is a coefficient for every column.
-                let value = solution.get(place).copied().unwrap_or(0.0);
-                (positive && value < 0.0).then_some((place, value * entry(&products, place, place).sqrt()))
+                let value = solution[place];
+                (positive && value < 0.0).then_some((place, value * products[(place, place)].sqrt()))
             };
             let worst = kept.iter().enumerate().filter_map(below).min_by(|a, b| a.1.total_cmp(&b.1));
             match worst {
@@ -244,7 +246,7 @@ impl Dictionary {
         for (at, value) in kept.iter().zip(solution.iter()) {
             if let (Some(slot), Some(own)) = (coefficients.get_mut(*at), all.get(*at)) {
                 *slot = *value;
-                squares += value * element(&self.scores, own.0);
+                squares += value * self.scores[own.0];
             }
         }
         let mut from = 0;
@@ -265,9 +267,8 @@ impl Dictionary {
 
     /// Returns the fit parameters that an entry's coefficients stand for.
     pub(crate) fn parameters(&self, entry: usize, coefficients: &[f64]) -> Vec<f64> {
-        let entry = self.entries.get(entry);
-        // A missing entry has no parameters.
-        entry.map(|entry| entry.candidate.linear_parameters(&entry.shape, coefficients)).unwrap_or_default()
+        let entry = &self.entries[entry];
+        entry.candidate.linear_parameters(&entry.shape, coefficients)
     }
 }
 

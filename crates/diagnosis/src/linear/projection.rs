@@ -46,8 +46,7 @@ impl Projection {
     /// Builds the projection from the Jacobian of each segment, whose columns are those of the start state,
     /// then the global ones.
     pub(crate) fn from_jacobians(jacobians: &[DMatrix<f64>], starts: usize) -> Self {
-        // Without segments there is nothing to project.
-        let globals = jacobians.first().map_or(0, |jacobian| jacobian.ncols() - starts);
+        let globals = jacobians.iter().map(|jacobian| jacobian.ncols() - starts).fold(0, usize::max);
         let rows = jacobians.iter().map(DMatrix::nrows).sum();
         let mut all = DMatrix::zeros(rows, globals);
         let mut segments = Vec::with_capacity(jacobians.len());

@@ -7,6 +7,8 @@
 //! of torques, which makes it possible to evaluate a hundred candidates at once. Full fits use exact
 //! sensitivities instead.
 
+#![allow(clippy::indexing_slicing, reason = "columns have a row for every sample of all paths")]
+
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
@@ -105,13 +107,11 @@ impl Path {
             let gain = system.nominal().input_gain();
             let [torque, torque_rate] = driven(input, gain, &segment.times);
             let (x, rate, _) = observed(data.quantity, &motion);
-            // Every series has an entry for each sample.
-            let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(0.0);
-            let slopes = x
-                .iter()
-                .zip(&segment.times)
-                .enumerate()
-                .map(|(index, (x, time))| measurement.observe([*x, 0.0], at(rate, index), *time, 0.0).slope)
+            // The rate of an acceleration is not integrated and counts as zero.
+            let rates = rate.iter().copied().chain(std::iter::repeat(0.0));
+            let samples = x.iter().zip(rates).zip(&segment.times);
+            let slopes = samples
+                .map(|((x, rate), time)| measurement.observe([*x, 0.0], rate, *time, 0.0).slope)
                 .collect();
             let mut path = Self {
                 times: segment.times.clone(),
@@ -284,10 +284,8 @@ pub(crate) fn stack(paths: &[Path], column: impl Fn(&Path) -> Vec<f64>) -> Vec<f
 
 /// Builds a matrix from columns.
 pub(crate) fn matrix(rows: usize, columns: &[Vec<f64>]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows, columns.len(), |row, column| {
-        // Columns are as long as there are rows.
-        columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0.0)
-    })
+    debug_assert!(columns.iter().all(|column| column.len() == rows));
+    DMatrix::from_fn(rows, columns.len(), |row, column| columns[column][row])
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Summary of the measurement chain.
 
+#![allow(clippy::indexing_slicing, reason = "data are cut from at least one record")]
+
 use crate::answer::{Finding, MeasuringChain};
 use crate::data::observations::Observations;
 use crate::data::segments::Data;
@@ -74,11 +76,10 @@ pub(crate) fn chain(
     if host && !known {
         findings.extend(signatures::noise_with_speed(data, repaired));
     }
-    let first = records.first();
+    let first = &records[0];
     Ok(MeasuringChain {
-        clock: first.map_or("host", |record| record.clock.name()),
-        // Without records there is no rate.
-        sample_rate_hz: first.map_or(0.0, |record| record.sample_rate_hz),
+        clock: first.clock.name(),
+        sample_rate_hz: first.sample_rate_hz,
         resolution: data.resolution,
         noise,
         findings,

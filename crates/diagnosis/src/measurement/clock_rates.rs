@@ -6,6 +6,8 @@
 //! runs on corrected clocks, and the better result is kept: a law by which the frequency depends on the
 //! amplitude explains more than rates that imitate it.
 
+#![allow(clippy::indexing_slicing, reason = "there is a rate for every record")]
+
 use crate::answer::Finding;
 use crate::data::observations::Observations;
 use crate::data::segments::{Data, Segment};
@@ -14,7 +16,7 @@ use crate::fit::levenberg_marquardt::{Moving, fit, residuals};
 use crate::fit::stopping::Stopping;
 use crate::linear::projection::Projection;
 use crate::linear::tangent::matrix;
-use crate::matrices::{element, solve};
+use crate::matrices::solve;
 use crate::model::candidate::Candidate;
 use crate::residual::floor;
 use crate::sets::archive::Archive;
@@ -129,9 +131,7 @@ impl Data {
     /// None for rates above −1, since the times of an input stay in increasing order.
     fn without_rates(&self, rates: &[f64]) -> Result<Self, DynamicsError> {
         let slower = |times: &[f64], record: usize| -> Vec<f64> {
-            // A record without a rate is on the clock of the first.
-            let rate = rates.get(record).copied().unwrap_or_default();
-            times.iter().map(|time| true_time(*time, rate)).collect()
+            times.iter().map(|time| true_time(*time, rates[record])).collect()
         };
         let segments =
             self.segments.iter().map(|own| Segment { times: slower(&own.times, own.record), ..own.clone() });
@@ -261,7 +261,7 @@ fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError
         return Ok(None);
     }
     let solution = solution.column(0).clone_owned();
-    let solved = (0..records - 1).map(|at| element(&solution, at));
+    let solved = (0..records - 1).map(|at| solution[at]);
     Ok(Some((std::iter::once(0.0).chain(solved).collect(), price)))
 }
 

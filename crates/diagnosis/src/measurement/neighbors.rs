@@ -16,9 +16,7 @@ pub(crate) fn white_noise(observations: &Observations, kept: &[bool]) -> f64 {
     let points = points(observations, kept);
     let sizes: Vec<f64> =
         distances(&points, 1, interval(observations)).iter().flatten().map(Distance::in_noise).collect();
-    // Readings without a stated resolution count as not rounded.
-    let rounding = observations.resolution.map_or(0.0, |step| step / 12.0_f64.sqrt());
-    (OF_MEDIAN * median(&sizes)).max(rounding)
+    (OF_MEDIAN * median(&sizes)).max(observations.step() / 12.0_f64.sqrt())
 }
 
 /// Index, time and value of a sample.

@@ -1,5 +1,10 @@
 //! Detection of isolated wrong samples by comparison with the samples around them.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "there is a distance for every sample, and a block for every distance"
+)]
+
 use crate::data::observations::Observations;
 use crate::measurement::neighbors::{Distance, OF_MEDIAN, distances, interval, points};
 use crate::measurement::stale::stale;
@@ -72,8 +77,7 @@ fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
     let interval = interval(observations);
     let near = distances(&points, 1, interval);
     let far = distances(&points, 2, interval);
-    // Readings without a stated resolution count as not rounded.
-    let step = observations.resolution.unwrap_or(0.0);
+    let step = observations.step();
     let sizes: Vec<f64> = near.iter().flatten().map(Distance::in_noise).collect();
     let whole = (OF_MEDIAN * median(&sizes)).max(step / 12.0_f64.sqrt());
     let blocks: Vec<f64> = near
@@ -82,23 +86,22 @@ fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
         .collect();
     let around = |index: usize| {
         let block = index / BLOCK;
-        // The range is within the blocks.
-        let own = blocks.get(block.saturating_sub(1)..(block + 2).min(blocks.len())).unwrap_or_default();
+        let own = &blocks[block.saturating_sub(1)..(block + 2).min(blocks.len())];
         own.iter().copied().fold(whole, f64::max)
     };
     let limit = normal_above(0.5 * FALSE_ALARM / points.len().max(1) as f64);
-    let beside = |index: Option<usize>| {
-        // A missing neighbor counts as a distance of zero.
-        index.and_then(|index| near.get(index).copied().flatten()).map_or(0.0, |distance| distance.in_noise())
+    let beside = |index: usize| {
+        let neighbors = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
+        neighbors.filter_map(|index| near.get(index)?.as_ref()).map(Distance::in_noise)
     };
     let mut wrong = Vec::new();
-    for (index, (near, far)) in near.iter().zip(&far).enumerate() {
-        let (Some(near), Some(far), Some(point)) = (near, far, points.get(index)) else { continue };
-        let outlying = near.value.abs() > limit * around(index) * near.spread + near.rounding * step;
-        let straight = far.value * near.value > 0.0
-            && far.value.abs() < BEND * near.value.abs() + far.rounding.max(near.rounding) * step;
-        let sides = beside(index.checked_sub(1)).max(beside(Some(index + 1)));
-        if outlying && straight && sides < STEP * near.in_noise() {
+    for (index, ((own, far), point)) in near.iter().zip(&far).zip(&points).enumerate() {
+        let (Some(own), Some(far)) = (own, far) else { continue };
+        let outlying = own.value.abs() > limit * around(index) * own.spread + own.rounding * step;
+        let straight = far.value * own.value > 0.0
+            && far.value.abs() < BEND * own.value.abs() + far.rounding.max(own.rounding) * step;
+        let sides = beside(index).fold(0.0, f64::max);
+        if outlying && straight && sides < STEP * own.in_noise() {
             wrong.push(point.0);
         }
     }

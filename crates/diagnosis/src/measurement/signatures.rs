@@ -150,7 +150,6 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
     let noise = white_noise(observations, kept);
     let per_time = mean_square_speed(observations, kept, noise) / (noise * noise).max(f64::MIN_POSITIVE);
     let mut findings = Vec::new();
-    // Stamps that are not rounded have no step.
     let rounding = stamps.rounding_s.unwrap_or(0.0);
     // Rounding moves a stamp by up to half its step, so that second differences over √6 stay below 0.82
     // steps.
@@ -294,10 +293,9 @@ pub(crate) fn noise_with_speed(data: &Data, fit: &Fit) -> Option<Finding> {
     let (quick, quick_error) = mean_and_error(&fast);
     let (calm, calm_error) = mean_and_error(&slow);
     let z = (quick - calm) / quick_error.hypot(calm_error);
-    // Readings without a stated resolution count as not rounded.
-    let quantum = data.resolution.map_or(0.0, |step| step * step / 12.0);
+    let is_rounding = data.resolution.is_some_and(|step| quick <= 2.0 * (step * step / 12.0));
     // Second differences of white noise are correlated; a factor of 1.5 in the error accounts for it.
-    (z > 1.5 * normal_above(1e-4) && quick > 1.75 * calm && quick > 2.0 * quantum).then(|| Finding {
+    (z > 1.5 * normal_above(1e-4) && quick > 1.75 * calm && !is_rounding).then(|| Finding {
         effect: Some("timestamp_jitter"),
         text: format!(
             "the white part of the residual is {:.1} times larger at high speed than at low speed ({z:.0} standard \

@@ -4,7 +4,6 @@ use crate::data::observations::Observations;
 use crate::measurement::neighbors::white_noise;
 use crate::noise::statistics::quantile;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
-use statrs::statistics::Distribution;
 
 /// Largest number of samples on either side over which the speed is measured.
 const AROUND: usize = 3;
@@ -40,11 +39,8 @@ pub(crate) fn stale(observations: &Observations) -> Vec<bool> {
         return none;
     }
     let step = observations.resolution.unwrap_or_else(|| unlike(values));
-    let Ok(change) =
-        Normal::new(0.0, std::f64::consts::SQRT_2 * noise(observations, &repeats).max(1e-9 * step))
-    else {
-        return none;
-    };
+    let deviation = std::f64::consts::SQRT_2 * noise(observations, &repeats).max(1e-9 * step);
+    let Ok(change) = Normal::new(0.0, deviation) else { return none };
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Speed in values per row, and the probability that two fresh readings agree.
@@ -52,13 +48,13 @@ pub(crate) fn stale(observations: &Observations) -> Vec<bool> {
         .iter()
         .enumerate()
         .map(|(at, value)| {
-            // An outlier at one of the ends is far off; the least of several is not.
+            // An outlier at one end makes a speed too large, so the smallest of several counts.
             let over = |around: usize| {
                 let (from, to) = (at.saturating_sub(around + 1), (at + around).min(values.len() - 1));
                 Some((values.get(to)? - values.get(from)?).abs() / (to - from).max(1) as f64)
             };
             let speed = (1..=AROUND).filter_map(over).fold(f64::INFINITY, f64::min);
-            (*value > lowest && *value < highest).then(|| (speed, agree(&change, speed, step)))
+            (*value > lowest && *value < highest).then(|| (speed, agree(&change, deviation, speed, step)))
         })
         .collect();
     let (mut moving, mut found, mut expected) = (0.0, 0.0, 0.0);
@@ -100,12 +96,11 @@ fn noise(observations: &Observations, repeats: &[bool]) -> f64 {
     white_noise(observations, &fresh)
 }
 
-/// Returns E[(1 − |d|/q)₊] for a change of mean `speed`.
-fn agree(change: &Normal, speed: f64, step: f64) -> f64 {
+/// Returns E[(1 − |d|/q)₊] for a change of mean `speed`. `change` is a normal distribution about zero with a standard
+/// `deviation`.
+fn agree(change: &Normal, deviation: f64, speed: f64, step: f64) -> f64 {
     // The integral of the normal distribution's probability.
-    // A normal distribution has a deviation.
-    let variance = change.std_dev().map_or(0.0, |deviation| deviation * deviation);
-    let ramp = |x: f64| x * change.cdf(x) + variance * change.pdf(x);
+    let ramp = |x: f64| x * change.cdf(x) + deviation * deviation * change.pdf(x);
     ((ramp(speed + step) + ramp(speed - step) - 2.0 * ramp(speed)) / step).clamp(0.0, 1.0)
 }
 

@@ -1,5 +1,10 @@
 //! Hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "a point begins with the calibrated numbers, whose indices the hypothesis made itself"
+)]
+
 use crate::data::scales::Scales;
 use crate::model::candidate::{Candidate, EvidenceClass, Parameter};
 use crate::model::sensor::Sensor;
@@ -217,10 +222,7 @@ impl Hypothesis {
     pub(crate) fn nominal_point(&self) -> Vec<f64> {
         let coefficients = self.nominal.coefficients();
         let stated = |which: Calibrated| match which {
-            Calibrated::Effect { known, parameter } => {
-                // A known effect states every parameter.
-                self.known.get(known).and_then(|known| known.stated.get(parameter).copied()).unwrap_or(0.0)
-            }
+            Calibrated::Effect { known, parameter } => self.known[known].stated[parameter],
             which => which.of(&coefficients),
         };
         self.calibrated.iter().map(|&which| stated(which)).collect()
@@ -228,8 +230,7 @@ impl Hypothesis {
 
     /// Returns each candidate's part of a point.
     pub(crate) fn parts<'a>(&self, facts: &Scales, point: &'a [f64]) -> Vec<&'a [f64]> {
-        // A point without candidates ends with the calibrated coefficients.
-        let mut rest = point.get(self.calibrated.len()..).unwrap_or_default();
+        let mut rest = &point[self.calibrated.len()..];
         self.candidates
             .iter()
             .map(|candidate| {

@@ -1,5 +1,6 @@
 //! Readings of a sensor that lags, along a motion.
 
+use crate::noise::statistics::duration;
 use dynamics::chain::LowPass;
 use dynamics::scalar::Dual;
 
@@ -35,9 +36,7 @@ impl<'t> Lag<'t> {
     /// Prepares the filter of a time constant for the times of a segment. `frequency` is the swing's angular
     /// frequency.
     pub(crate) fn new(constant: f64, times: &'t [f64], frequency: f64) -> Self {
-        // Without samples the span is zero.
-        let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-        let interval = span / times.len().max(2) as f64;
+        let interval = duration(times) / times.len().max(2) as f64;
         let constant = constant.max(SHORTEST * interval).max(f64::MIN_POSITIVE);
         let is_near = |from: &f64, to: &f64| (to - from) * frequency < LONGEST;
         let mut from = 0;

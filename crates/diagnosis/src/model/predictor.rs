@@ -1,8 +1,12 @@
 //! Predictions of a hypothesis for a segment, with exact derivatives.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "series and Jacobians have a row for every sample of their segment, of which there is at least one"
+)]
+
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
-use crate::matrices::{entry, set};
 use crate::model::candidate::Candidate;
 use crate::model::contact::{Bent, bent};
 use crate::model::encoder_hysteresis::readings;
@@ -271,14 +275,11 @@ impl<'a> Simulator<'a> {
             seen = seen.through(&lag, self.derivatives == Derivatives::All);
         }
         let bends_by = self.bends_by(segment, start);
-        // A segment has samples; without any no row is read.
-        let start_time = segment.times.first().copied().unwrap_or_default();
+        let start_time = segment.start_s();
         for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
             let (x, rate) = seen.at(row);
             let observed = self.measurement.observe(x, rate, time, start_time);
-            if let Some(slot) = residual.get_mut(row) {
-                *slot = value - observed.value;
-            }
+            residual[row] = value - observed.value;
             if self.derivatives != Derivatives::None {
                 self.differentiate(row, starts, &seen, &observed, &mut jacobian);
                 self.bend(row, &seen, &observed, &bends_by, &mut jacobian);
@@ -303,7 +304,7 @@ impl<'a> Simulator<'a> {
         jacobian: &mut DMatrix<f64>,
     ) {
         for column in 0..starts {
-            set(jacobian, row, column, observed.slope * seen.by(row, column));
+            jacobian[(row, column)] = observed.slope * seen.by(row, column);
         }
         let own = if self.derivatives == Derivatives::All { self.sources.as_slice() } else { &[] };
         for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
@@ -312,12 +313,12 @@ impl<'a> Simulator<'a> {
                 (None, Source::Effect(index, parameter)) => {
                     let effect = self.hypothesis.effect(index);
                     let which = effect.and_then(|effect| effect.sensor_derivative(parameter));
-                    // A parameter that the sensor lacks changes no reading.
-                    which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
+                    let Some(which) = which else { continue };
+                    observed.by_parameter[which]
                 }
-                (None, Source::Nominal(_)) => 0.0,
+                (None, Source::Nominal(_)) => continue,
             };
-            set(jacobian, row, starts + number, value);
+            jacobian[(row, starts + number)] = value;
         }
     }
 
@@ -333,17 +334,15 @@ impl<'a> Simulator<'a> {
         let Some(column) = self.contact.and_then(|contact| contact.column) else { return };
         let moved = observed.slope * seen.by(row, column);
         for &(column, by) in bends_by {
-            let known = entry(jacobian, row, column);
-            set(jacobian, row, column, known + by * moved);
+            let known = jacobian[(row, column)];
+            jacobian[(row, column)] = known + by * moved;
         }
     }
 
     /// Applies the reading hysteresis to residual and Jacobian, if the sensor has one.
     fn hold(&self, segment: &Segment, residual: &mut DVector<f64>, jacobian: &mut DMatrix<f64>) {
         let Some(width) = self.measurement.reading else { return };
-        // The lists of a segment without samples are not read.
-        let of = |list: &[f64]| list.first().copied().unwrap_or(0.0);
-        let (rate, curvature) = (of(&self.response.velocity), of(&self.response.acceleration));
+        let (rate, curvature) = (self.response.velocity[0], self.response.acceleration[0]);
         let values = segment.values.iter().zip(residual.iter()).map(|(observed, left)| observed - left);
         let readings = readings(values, width, rate, curvature);
         for (slot, (reading, observed)) in residual.iter_mut().zip(readings.iter().zip(&segment.values)) {
@@ -351,17 +350,13 @@ impl<'a> Simulator<'a> {
         }
         for mut column in jacobian.column_iter_mut() {
             for (row, reading) in readings.iter().enumerate() {
-                // A reading comes from the same sample or an earlier one.
-                let moved = column.get(reading.since).copied().unwrap_or(0.0);
-                if let Some(slot) = column.get_mut(row) {
-                    *slot = moved;
-                }
+                column[row] = column[reading.since];
             }
         }
         if let Some(own) = self.by_width().filter(|_| self.derivatives == Derivatives::All) {
             let column = self.hypothesis.start_length() + own;
             for (row, reading) in readings.iter().enumerate() {
-                set(jacobian, row, column, reading.by_width);
+                jacobian[(row, column)] = reading.by_width;
             }
         }
     }
@@ -383,7 +378,7 @@ impl<'a> Simulator<'a> {
                 let law = jacobian.columns(at, part.len()).clone_owned();
                 let mut change = DMatrix::identity(part.len(), part.len());
                 for (row, column, slope) in slopes {
-                    set(&mut change, row, column, slope);
+                    change[(row, column)] = slope;
                 }
                 jacobian.columns_mut(at, part.len()).copy_from(&(law * change));
             }
@@ -395,9 +390,7 @@ impl<'a> Simulator<'a> {
     pub(crate) fn end(&mut self, segment: &Segment, start: &[f64]) -> Result<Vec<f64>, DynamicsError> {
         self.run(segment, start)?;
         let end = self.response.end;
-        // A motion without hidden bodies ends with none.
-        let all = end.hidden.unwrap_or_default();
-        let own = hidden(self.hypothesis).filter_map(|index| all.get(index).copied());
+        let own = end.hidden.iter().flat_map(|all| hidden(self.hypothesis).map(|index| all[index]));
         Ok([end.position, end.velocity].into_iter().chain(own).collect())
     }
 

@@ -1,5 +1,10 @@
 //! Observed quantity along a motion, with its derivatives.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "a series that was integrated has an entry for every row and column"
+)]
+
 use crate::model::lag::Lag;
 use dynamics::sensitivity::Response;
 use record::Quantity;
@@ -43,12 +48,8 @@ impl<'r> Seen<'r> {
     /// Returns the same as a sensor with a lag sees it.
     /// `differentiated` asks for the derivatives by the time constant, which count as zero otherwise.
     pub(crate) fn through(self, lag: &Lag<'_>, differentiated: bool) -> Self {
-        // A response has an entry for every row; derivatives that it lacks count as zero.
-        let of = |lists: [&'r [f64]; 3], index: usize| {
-            let [value, others @ ..] = lists;
-            // As said above.
-            let [rate, curvature] = others.map(|list| list.get(index).copied().unwrap_or(0.0));
-            Some([*value.get(index)?, rate, curvature])
+        let of = |[value, rate, curvature]: [&'r [f64]; 3], index: usize| {
+            Some([*value.get(index)?, at(rate, index), at(curvature, index)])
         };
         let motion = |row: usize| of(self.motion, row);
         let column = |own: usize| lag.of(&|row| of(self.by_free, row * self.columns + own));
@@ -62,21 +63,21 @@ impl<'r> Seen<'r> {
 
     /// Returns the quantity after the lag with its derivative by the time constant, and its rate.
     pub(crate) fn at(&self, row: usize) -> ([f64; 2], f64) {
-        // As above.
-        let of = |list: &[f64]| list.get(row).copied().unwrap_or(0.0);
-        let [value, rate, _] = self.motion.map(of);
-        let read = self.lagged.as_ref().map(|own| [of(&own.values), of(&own.by_constant)]);
+        let [value, rate, _] = self.motion.map(|list| at(list, row));
+        let read = self.lagged.as_ref().map(|own| [own.values[row], at(&own.by_constant, row)]);
         (read.unwrap_or([value, 0.0]), rate)
     }
 
     /// Returns the derivative by the free quantity of a column.
     pub(crate) fn by(&self, row: usize, column: usize) -> f64 {
-        let [by_value, ..] = self.by_free;
-        let own = match &self.lagged {
-            Some(lagged) => lagged.by_free.get(column).and_then(|own| own.get(row)),
-            None => by_value.get(row * self.columns + column),
-        };
-        // As above.
-        own.copied().unwrap_or(0.0)
+        match &self.lagged {
+            Some(lagged) => lagged.by_free[column][row],
+            None => self.by_free[0][row * self.columns + column],
+        }
     }
+}
+
+/// Returns an entry of a series; zero for a series that was not integrated.
+fn at(series: &[f64], index: usize) -> f64 {
+    if series.is_empty() { 0.0 } else { series[index] }
 }

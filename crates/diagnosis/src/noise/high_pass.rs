@@ -1,5 +1,7 @@
 //! High-pass filter by a moving mean over one period.
 
+#![allow(clippy::indexing_slicing, reason = "times, values and integrals are equally long")]
+
 /// Returns the integrals of a polygon from its first time to each of its times.
 fn integrals(times: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
@@ -13,6 +15,7 @@ fn integrals(times: &[f64], values: &[f64]) -> Vec<f64> {
 
 /// Returns the integral of a polygon from its first time to any time within it.
 fn integral(times: &[f64], values: &[f64], integrals: &[f64], time: f64) -> f64 {
+    debug_assert!(values.len() == times.len() && integrals.len() == times.len());
     let last = times.len().saturating_sub(2);
     let at = times.partition_point(|own| *own <= time).saturating_sub(1).min(last);
     let (Some(&[from, to]), Some(&[one, next])) = (
@@ -24,8 +27,7 @@ fn integral(times: &[f64], values: &[f64], integrals: &[f64], time: f64) -> f64 
     };
     let part = time - from;
     let slope = if to > from { (next - one) / (to - from) } else { 0.0 };
-    // Never absent: there are as many integrals as times.
-    integrals.get(at).copied().unwrap_or(0.0) + part * (one + 0.5 * part * slope)
+    integrals[at] + part * (one + 0.5 * part * slope)
 }
 
 /// Subtracts from every value the mean of the polygon through the values over a period centered on it; at the

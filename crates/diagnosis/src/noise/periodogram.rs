@@ -45,12 +45,12 @@ pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, g
 /// Returns the highest peaks of gains on a grid.
 pub(crate) fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<Line> {
     // Beyond the grid there is no gain.
-    let at = |index: Option<usize>| index.and_then(|i| gains.get(i)).copied().unwrap_or(0.0);
-    let mut peaks: Vec<Line> = gains
-        .iter()
+    let bordered = [&[0.0], gains, &[0.0]].concat();
+    let mut peaks: Vec<Line> = bordered
+        .array_windows()
         .enumerate()
-        .filter(|(i, gain)| **gain > at(i.checked_sub(1)) && **gain >= at(Some(i + 1)))
-        .map(|(i, gain)| Line { frequency: lowest + step * i as f64, gain: *gain })
+        .filter(|(_, [before, gain, after])| gain > before && gain >= after)
+        .map(|(i, &[_, gain, _])| Line { frequency: lowest + step * i as f64, gain })
         .collect();
     peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     peaks.truncate(most);

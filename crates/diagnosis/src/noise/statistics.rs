@@ -1,5 +1,7 @@
 //! Basic statistics.
 
+#![allow(clippy::indexing_slicing, reason = "indices are bounded by the last one")]
+
 use rand::RngExt;
 use seed::Seed;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
@@ -11,13 +13,21 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
 
 /// Returns the value below which a share of the values lies; 0 for no values.
 pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
+    debug_assert!((0.0..=1.0).contains(&share), "{share}");
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let at = share * sorted.len().saturating_sub(1) as f64;
-    // Without values the quantile is 0; callers have some.
-    let below = sorted.get(at.floor() as usize).copied().unwrap_or_default();
-    let above = sorted.get(at.ceil() as usize).copied().unwrap_or(below);
+    let Some(last) = sorted.len().checked_sub(1) else { return 0.0 };
+    let at = share * last as f64;
+    let (below, above) = (sorted[(at.floor() as usize).min(last)], sorted[(at.ceil() as usize).min(last)]);
     below + (above - below) * at.fract()
+}
+
+/// Returns the time from the first of some times to the last; 0 for fewer than two.
+pub(crate) fn duration(times: &[f64]) -> f64 {
+    match times {
+        [first, .., last] => last - first,
+        _ => 0.0,
+    }
 }
 
 pub(crate) fn median(values: &[f64]) -> f64 {
@@ -51,8 +61,7 @@ pub(crate) fn autocorrelation_time(pieces: &[&[f64]]) -> f64 {
     if square <= 0.0 {
         return 1.0;
     }
-    // Without pieces there is no correlation.
-    let longest = pieces.iter().map(|piece| piece.len()).max().unwrap_or(0);
+    let longest = pieces.iter().map(|piece| piece.len()).fold(0, usize::max);
     let at = |lag: usize| -> f64 {
         let products = pieces.iter().flat_map(|p| p.iter().zip(p.iter().skip(lag)));
         products.map(|(a, b)| a * b).sum::<f64>() / square

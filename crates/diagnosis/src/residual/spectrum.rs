@@ -68,8 +68,7 @@ pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> 
         let rate = decay / span;
         let mut gains = vec![0.0; count];
         for (segment, residual) in data.segments.iter().zip(residuals) {
-            // A segment without samples adds nothing.
-            let start = segment.times.first().copied().unwrap_or_default();
+            let start = segment.start_s();
             let mut squares = 0.0;
             let pairs = segment.times.iter().zip(*residual);
             let points: Vec<(f64, f64)> = pairs

@@ -71,13 +71,12 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
             proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
-            // If fewer candidates are ranked than are added, any gain is enough.
-            let weakest = ranked.get(additions_tried).map_or(0.0, |other| other.squares);
+            let is_ahead = ranked.get(additions_tried).is_none_or(|other| *gain > other.squares);
             // A gain from a spectrum is less reliable than a linearization: at the best set such a candidate
             // is tried in any case.
             let own = (*candidate, *gain);
             let is_worth_it = stands_alone(base, time, own, threshold, dictionary.frequencies);
-            if (best || *gain > weakest) && is_worth_it {
+            if (best || is_ahead) && is_worth_it {
                 proposals.push(proposal(data, base, &[], &[(*candidate, parameters.clone())]));
             }
         }
@@ -280,9 +279,9 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
 /// the error.
 fn reshape(data: &Data, pool: &mut Archive) {
     let ranked = pool.ranked(pool.autocorrelation_time());
-    // Without a set there is nothing to refit.
-    let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
-    take_in(data, pool, begun, Stopping::SEARCH);
+    if let Some(begun) = ranked.first().map(|best| reshaped(data, best)) {
+        take_in(data, pool, begun, Stopping::SEARCH);
+    }
 }
 
 /// Refits every subset of the best set that was rejected, or whose known fit ended farther from the data than

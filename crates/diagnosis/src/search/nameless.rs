@@ -28,7 +28,7 @@ const SETS: usize = 2;
 pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
     let weighing = Weighing::of(data, calibrated, archive, vocabulary);
     let weighed = weighing.weigh(archive);
-    // A single plain law is not questioned: one unlisted law could not replace several effects there.
+    // A single plain law is kept: an unlisted law is tried only in place of several effects.
     let is_plain = |best: &Fit| best.hypothesis.is_plain() && best.hypothesis.counted().count() < 2;
     if weighed.first().is_none_or(|best| is_plain(best.fit)) {
         return;

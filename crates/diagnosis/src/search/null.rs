@@ -1,7 +1,8 @@
 //! Null distribution of the largest gain among many candidates.
 
+#![allow(clippy::indexing_slicing, reason = "rows and columns are those of the dictionary")]
+
 use crate::linear::dictionary::Dictionary;
-use crate::matrices::{element, entry};
 use crate::noise::statistics::quantile;
 use crate::search::gains::singles;
 use nalgebra::{DMatrix, DVector};
@@ -28,8 +29,8 @@ pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) 
     // factor.
     let scale = dictionary.products.diagonal().map(f64::sqrt);
     let cosines = DMatrix::from_fn(width, width, |i, j| {
-        let length = element(&scale, i) * element(&scale, j);
-        if length > 0.0 { entry(&dictionary.products, i, j) / length } else { 0.0 }
+        let length = scale[i] * scale[j];
+        if length > 0.0 { dictionary.products[(i, j)] / length } else { 0.0 }
     });
     let eigen = cosines.symmetric_eigen();
     let mut factor = eigen.eigenvectors;
@@ -45,8 +46,7 @@ pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) 
         .map(|_| {
             let white = DVector::from_fn(width, |_, _| StandardNormal.sample(&mut generator));
             drawn.scores = &factor * white;
-            // Without a column there is no gain.
-            singles(&drawn).first().map_or(0.0, |gain| gain.squares)
+            singles(&drawn).iter().map(|gain| gain.squares).fold(0.0, f64::max)
         })
         .collect();
     quantile(&gains, 1.0 - probability)

@@ -1,5 +1,7 @@
 //! Fit of a torque without a name that repeats along the position, beside a set.
 
+#![allow(clippy::indexing_slicing, reason = "two columns have two coefficients")]
+
 use crate::data::segments::Data;
 use crate::fit::fitted::{Fit, Point};
 use crate::fit::levenberg_marquardt::{Moving, fit};
@@ -8,7 +10,6 @@ use crate::fit::stopping::Stopping;
 use crate::linear::dictionary::{Acting, INVISIBLE, Moment, Smooth, columns_of};
 use crate::linear::projection::Projection;
 use crate::linear::tangent::{Path, matrix};
-use crate::matrices::element;
 use crate::model::candidate::Candidate;
 use crate::sets::archive::vanished;
 use dynamics::DynamicsError;
@@ -106,7 +107,7 @@ fn wave(
     let scores: DVector<f64> = columns.tr_mul(residual).column(0).clone_owned();
     let solution = columns.tr_mul(&columns).lu().solve(&scores)?;
     let gain = solution.dot(&scores);
-    let torques = [element(&solution, 0), element(&solution, 1)];
+    let torques = [solution[0], solution[1]];
     (gain.is_finite() && gain > 0.0).then_some(Wave { wavenumber, torques, gain })
 }
 

@@ -13,8 +13,7 @@ use rayon::prelude::*;
 /// Number of sets refined in any case.
 const FEWEST: usize = 3;
 
-/// Distance in nats from the best set beyond which a set is not refined: its probability would be nil, and
-/// nobody would mistake it for the best.
+/// Distance in nats from the best set beyond which a set is not refined, because its probability is negligible.
 const HOPELESS: f64 = 30.0;
 
 /// Largest number of sets refitted on every sample, and of their rivals.

@@ -153,11 +153,10 @@ pub(crate) fn smoothed(data: &Data, run: &Segment, oscillator: &Nominal, noise: 
     let input = data.inputs.get(run.record).and_then(Option::as_ref);
     let acceleration =
         |input: &Input, at: f64| own.input_gain * input.at(at) / (own.inertia * unit * time * time);
-    let of_input = |at: &f64| {
-        // Without an input there is no torque.
-        input.map_or(0.0, |input| acceleration(input, *at))
+    let input: Vec<f64> = match input {
+        Some(input) => run.times.iter().map(|at| acceleration(input, *at)).collect(),
+        None => vec![0.0; run.times.len()],
     };
-    let input: Vec<f64> = run.times.iter().map(of_input).collect();
     let (observe, direct, rate, offset) = match data.quantity {
         Quantity::Position => (RowVector3::new(1.0, 0.0, 0.0), 0.0, 1.0, rest),
         Quantity::Velocity => (RowVector3::new(0.0, 1.0, 0.0), 0.0, time, 0.0),

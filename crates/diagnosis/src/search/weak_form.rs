@@ -267,7 +267,7 @@ impl<'a> WeakForm<'a> {
         }
         let [.., is_rest_free] = self.free;
         let rest_angle = if is_spring && is_rest_free { moment / stiffness } else { stated.rest_angle };
-        // A rest angle far outside of the swing is that of another law.
+        // A fitted rest angle far outside of the swing shows that another law acts.
         let reach = 2.0 * self.data.facts.amplitude;
         let rest_angle = rest_angle.clamp(stated.rest_angle - reach, stated.rest_angle + reach);
         Some(Coefficients { inertia, damping: damping.max(0.0), stiffness, rest_angle, ..stated })
@@ -348,7 +348,7 @@ impl Rows {
             torque - held.map(|(term, (_, value))| term * value).sum::<f64>()
         });
         let torque = DMatrix::from_iterator(rows, 1, left);
-        // The laws act on the side of the torque.
+        // Torques of the laws enter the equation of motion with the opposite sign.
         let laws: Vec<f64> = self.laws.iter().flatten().map(|own| -own).collect();
         let laws = DMatrix::from_row_slice(rows, width, &laws);
         let products = oscillator.tr_mul(&oscillator);

@@ -23,9 +23,12 @@
 //! 425 (the discrepancy). Miller, Dunson, Journal of the American Statistical Association 114 (2019) 1113
 //! (why a likelihood that takes a left-over for noise is too certain).
 
+#![allow(clippy::indexing_slicing, reason = "the ranges of a segment's parts cover its samples")]
+
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::noise::periodogram::below_images;
+use crate::noise::statistics::duration;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -60,13 +63,11 @@ impl Bins {
     /// too. A line at one frequency falls off by the fourth power beside it.
     fn new(times: &[f64], facts: &Scales, interval: f64) -> Self {
         let frequency = facts.frequency;
-        // A stretch without samples has no bins.
-        let first = times.first().copied().unwrap_or_default();
-        let after: Vec<f64> = times.iter().map(|time| time - first).collect();
+        let after: Vec<f64> = times.iter().map(|time| time - times[0]).collect();
         let count = after.len();
         // The length has as many steps as there are samples: neighboring bins are then alike in every
         // segment.
-        let length = after.last().copied().unwrap_or_default() + interval;
+        let length = duration(times) + interval;
         let highest = below_images(interval).min(0.5 * (BANDS as f64 - 0.5) * frequency);
         let weight = (2.0 / count.max(1) as f64).sqrt();
         // A bin every half turn, from the middle of a step on.
@@ -121,9 +122,7 @@ impl Likelihood {
         let interval = data.interval();
         for segment in &data.segments {
             for part in segment.part_ranges() {
-                // Ranges of parts lie within their segment.
-                let times = segment.times.get(part).unwrap_or_default();
-                bins.push(Bins::new(times, &data.facts, interval));
+                bins.push(Bins::new(&segment.times[part], &data.facts, interval));
             }
         }
         let mut own = Self { bins, worth: Vec::new(), noise: noise * noise };

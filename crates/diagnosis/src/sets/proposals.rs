@@ -1,6 +1,8 @@
 //! Proposals: sets to fit with the points where their fits begin, derived from a fit by removing, adding or
 //! replacing members.
 
+#![allow(clippy::indexing_slicing, reason = "a law has at least one parameter")]
+
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::fitted::{Fit, Point, extended};
@@ -66,8 +68,7 @@ pub(crate) fn proposal(
         .collect();
     for (candidate, values) in added {
         match members.iter_mut().find(|(own, _)| own == candidate).map(|(_, own)| own.as_mut_slice()) {
-            // An addition without values changes nothing.
-            Some([first, ..]) => *first += values.first().copied().unwrap_or_default(),
+            Some([first, ..]) => *first += values[0],
             _ => members.push((*candidate, values.clone())),
         }
     }

@@ -104,8 +104,7 @@ impl<'a> Weighing<'a> {
 
 /// Sets the probabilities of sets, which come best first, so that they add up to 1.
 pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
-    // Without sets there is nothing to share.
-    let best = weighed.first().map_or(0.0, |w| w.evidence);
+    let Some(best) = weighed.first().map(|w| w.evidence) else { return };
     let total: f64 = weighed.iter().map(|w| (w.evidence - best).exp()).sum();
     for w in weighed {
         w.probability = (w.evidence - best).exp() / total;

@@ -51,11 +51,12 @@ impl<'a> Judged<'a> {
         let classes = inclusion.classes(witness.as_ref(), &request.settings.seed);
         let names = likely(&classes);
         let within = inclusion.within(&names);
-        // If no set is within these classes, nothing is named.
-        let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
+        // If no set is within these classes, nothing is named; evidence is relative to the set without effects.
+        let (mut chosen, least) = match within {
+            Some(w) => (w.fit.hypothesis.candidates.clone(), w.evidence - WORSE),
+            None => (Vec::new(), -WORSE),
+        };
         if let Some(fit) = inclusion.completed(&refined.data, &names) {
-            // Evidence is relative to the set without effects.
-            let least = within.map_or(0.0, |w| w.evidence) - WORSE;
             let set = work.predicted(completed.get_or_init(|| fit));
             if let Some(set) = set.filter(|set| inclusion.evidence(set) > least) {
                 chosen.clone_from(&set.followed.hypothesis.candidates);

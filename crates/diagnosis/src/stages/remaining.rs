@@ -77,7 +77,7 @@ impl Remaining {
             evidence = f64::INFINITY;
         }
         if gap.ratio_to_floor_interval_95[1] < 1.0 {
-            // An error below the noise is the noise's: its spectrum is not white.
+            // An error below the noise is part of the noise, whose spectrum is then not white.
             evidence = 0.0;
         }
         let left_over = acts(evidence);

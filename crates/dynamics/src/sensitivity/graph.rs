@@ -186,7 +186,7 @@ impl Graph {
     #[inline]
     pub(crate) fn coefficient(&self, number: usize, degree: usize) -> f64 {
         debug_assert!(degree < LENGTH, "coefficient {degree} of {LENGTH}");
-        self.series(number)[degree]
+        self.series(number)[degree.min(LENGTH - 1)]
     }
 
     /// Returns the state variable that a node is identical to; `None` if it is another expression.

@@ -2,6 +2,8 @@
 //!
 //! Reference: Vehtari, Gelman, Simpson, Carpenter, Bürkner, Bayesian Anal. 16 (2021) 667.
 
+#![allow(clippy::indexing_slicing, reason = "callers give at least one chain")]
+
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Diagnostics of one quantity.
@@ -21,9 +23,7 @@ impl Diagnostics {
     /// R̂ is infinite, and there are no effective draws.
     pub(crate) fn of(chains: &[Vec<f64>]) -> Self {
         let split = split(chains);
-        // Without chains there is no draw.
-        let shortest = split.iter().map(Vec::len).min().unwrap_or_default();
-        if shortest < 2 {
+        if split.is_empty() || split.iter().any(|chain| chain.len() < 2) {
             return Self { r_hat: f64::INFINITY, bulk: 0.0, tail: 0.0 };
         }
         let ranked = rank_normalized(&split);
@@ -105,8 +105,7 @@ fn variance(values: &[f64]) -> f64 {
 
 /// Returns the within-chain variance and the pooled estimate: equations 1 to 3.
 fn variances(chains: &[Vec<f64>]) -> (f64, f64) {
-    // Without chains there is no draw.
-    let length = chains.first().map_or(0, Vec::len) as f64;
+    let length = chains[0].len() as f64;
     let within = mean(chains.iter().map(|chain| variance(chain)));
     let means: Vec<f64> = chains.iter().map(|chain| mean(chain.iter().copied())).collect();
     (within, (length - 1.0) / length * within + variance(&means))
@@ -121,8 +120,7 @@ fn r_hat(chains: &[Vec<f64>]) -> f64 {
 /// Returns the number of draws over the integrated autocorrelation time. Pairs of autocorrelations are summed
 /// while they stay positive, and are forced to decrease (Geyer): equations 10 to 13.
 pub(crate) fn effective_draws(chains: &[Vec<f64>]) -> f64 {
-    // Without chains there is no draw.
-    let length = chains.first().map_or(0, Vec::len);
+    let Some(length) = chains.first().map(Vec::len) else { return 0.0 };
     let total = (length * chains.len()) as f64;
     let (within, pooled) = variances(chains);
     if !(pooled > 0.0 && within > 0.0) {

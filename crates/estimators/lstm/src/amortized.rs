@@ -74,8 +74,7 @@ impl Encoder for Reader {
     /// Returns (s, ln Δ, z, Δz) of each entry: its time, the logarithm of the mean time between entries, its
     /// value, and the change of the value since the previous entry, which distinguishes scatter from a bend.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
-        // Without sequences there are no entries.
-        let entries = sequences.first().map_or(0, Sequence::len);
+        let entries = Sequence::length(sequences);
         let features = sequences
             .iter()
             .flat_map(|sequence| {

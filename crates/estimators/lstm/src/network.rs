@@ -87,8 +87,7 @@ impl Encoder for Network {
     /// Returns (Δs, z) of each entry: the time since the previous entry in units of the mean interval, 0 for
     /// the first, and z.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
-        // Without sequences there are no entries.
-        let entries = sequences.first().map_or(0, Sequence::len);
+        let entries = Sequence::length(sequences);
         let features = |sequence: &Sequence| -> Vec<f64> {
             let interval = sequence.mean_interval();
             let before = sequence.times.first().into_iter().chain(&sequence.times);

@@ -42,8 +42,8 @@ impl Estimator for NeuralOdeConfig {
             let decay_rate = known.map_or_else(
                 || {
                     // This state has just been solved, so that it cannot fail here.
-                    let fitted = objective.fitted(state.parameters).unwrap_or_default();
-                    scaling.rate_per_centered_time(-objective.projected_slope(&fitted))
+                    let rate = |fitted| scaling.rate_per_centered_time(-objective.projected_slope(&fitted));
+                    objective.fitted(state.parameters).map_or(f64::NAN, rate)
                 },
                 |(_, rate)| rate,
             );

@@ -158,9 +158,7 @@ impl Evolution<'_> {
     fn grown(&mut self, mut expression: Expression) -> Individual {
         let structure = expression.structure();
         let effort = Effort { steps: self.config.constant_steps, loss_tolerance: BREEDING_TOLERANCE };
-        // A structure that is not known yet was never fitted.
-        let fits = self.known.get(&structure).map_or(0, |known| known.fits);
-        if fits < FITS_PER_STRUCTURE {
+        if self.known.get(&structure).is_none_or(|known| known.fits < FITS_PER_STRUCTURE) {
             let loss = fit_constants(&mut expression, self.data, effort, &mut self.workspace).loss;
             // Constants that allow a pole between two peaks are worthless.
             let loss = if expression.is_sound() { loss } else { f64::INFINITY };

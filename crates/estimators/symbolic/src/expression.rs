@@ -1,5 +1,7 @@
 //! Expressions in x, with their values and derivatives at many points at once.
 
+#![allow(clippy::indexing_slicing, reason = "operands come before their operation")]
+
 use crate::operators::{Binary, Unary};
 
 /// Node of an expression tree.
@@ -201,9 +203,6 @@ impl Workspace {
             let Some(column) = rest.first_mut() else { break };
             column.clear();
             debug_assert!(self.stack.len() >= node.arity(), "operands come before their operation");
-            // Never absent in a well-formed expression; no other kind is created.
-            let mut pop = || self.stack.pop().unwrap_or_default();
-            let empty: &[f64] = &[];
             let operands = match node {
                 Node::Constant(value) => {
                     column.resize(points.len(), *value);
@@ -214,15 +213,14 @@ impl Workspace {
                     [0, 0]
                 }
                 Node::Unary(operator) => {
-                    let of = pop();
-                    operator.apply(done.get(of).map_or(empty, |column| column), column);
+                    let Some(of) = self.stack.pop() else { break };
+                    operator.apply(&done[of], column);
                     [of, of]
                 }
                 Node::Binary(operator) => {
-                    let right = pop();
-                    let left = pop();
-                    let [a, b] = [left, right].map(|of| done.get(of).map_or(empty, |column| column));
-                    column.extend(a.iter().zip(b).map(|(&a, &b)| operator.value(a, b)));
+                    let (Some(right), Some(left)) = (self.stack.pop(), self.stack.pop()) else { break };
+                    let pairs = done[left].iter().zip(&done[right]);
+                    column.extend(pairs.map(|(&a, &b)| operator.value(a, b)));
                     [left, right]
                 }
             };

@@ -69,8 +69,8 @@ impl Grammar {
 
     fn unary<G: Rng>(&self, generator: &mut G) -> Unary {
         let known = Unary::ALL.len() - usize::from(!self.sine);
-        // Within the list, whose last entry is the sine.
-        one_of(Unary::ALL.get(..known).unwrap_or_default(), Unary::Exp, generator)
+        // The sine is the last one.
+        one_of(Unary::ALL.split_at(known).0, Unary::Exp, generator)
     }
 
     fn binary<G: Rng>(&self, generator: &mut G) -> Binary {

@@ -91,8 +91,7 @@ impl Encoder for Reader {
     /// between entries; then the encoding of the entry's time.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         let width = self.network.width();
-        // Without sequences there are no entries.
-        let entries = sequences.first().map_or(0, Sequence::len);
+        let entries = Sequence::length(sequences);
         let features = sequences
             .iter()
             .flat_map(|sequence| {

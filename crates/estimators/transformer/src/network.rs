@@ -1,5 +1,7 @@
 //! Network: burn's transformer encoder with a linear head.
 
+#![allow(clippy::indexing_slicing, reason = "the closure runs only for an entry")]
+
 use burn::module::Module;
 use burn::nn::activation::ActivationConfig;
 use burn::nn::transformer::{TransformerEncoder, TransformerEncoderConfig, TransformerEncoderInput};
@@ -112,15 +114,13 @@ pub(crate) fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64
 impl Encoder for Network {
     /// Returns z of each entry, then the encoding of its time since the first entry.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
-        // Without sequences there are no entries.
-        let entries = sequences.first().map_or(0, Sequence::len);
+        let entries = Sequence::length(sequences);
         let features = |sequence: &Sequence| -> Vec<f64> {
-            // A sequence without entries has no features either.
-            let first = sequence.times.first().copied().unwrap_or(0.0);
             let interval = sequence.mean_interval();
             let entries = sequence.times.iter().zip(&sequence.values);
             let features = entries.flat_map(|(time, value)| {
-                std::iter::once(*value).chain(time_encoding((time - first) / interval, self.width()))
+                let since = time - sequence.times[0];
+                std::iter::once(*value).chain(time_encoding(since / interval, self.width()))
             });
             features.collect()
         };

@@ -177,12 +177,10 @@ impl Problem<'_> {
         slopes: Option<&[f64]>,
     ) -> Sloped {
         let scaled = self.scaled;
-        let mut found = coefficients.iter().copied();
         debug_assert_eq!(coefficients.len(), columns.len() + 1, "the constant, then one for each column");
-        // Never absent: asserted above.
-        let constant = found.next().unwrap_or(0.0);
-        let terms: Vec<(Column, f64)> = columns.iter().copied().zip(found).collect();
-        let law = Law::new(constant, terms, Vec::new(), scaled);
+        let terms: Vec<(Column, f64)> =
+            columns.iter().copied().zip(coefficients.iter().skip(1).copied()).collect();
+        let law = Law::new(coefficients[0], terms, Vec::new(), scaled);
         let rates: Vec<f64> =
             along.iter().zip(&scaled.times).map(|(&log, &time)| law.rate(log, time)).collect();
         let curvatures: Vec<f64> = slopes.map_or_else(

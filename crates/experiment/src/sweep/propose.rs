@@ -3,6 +3,8 @@
 //! Bergstra, Bardenet, Bengio, Kégl, Algorithms for Hyper-Parameter Optimization, NeurIPS 24 (2011) 2546,
 //! applied to each key separately. Numbers are drawn in the unit interval of their scale.
 
+#![allow(clippy::indexing_slicing, reason = "a number is drawn among the kernels")]
+
 use super::{Dimension, Domain, SweepError};
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
@@ -82,6 +84,9 @@ const GOOD: f64 = 0.1;
 /// good to other points is chosen.
 const CANDIDATES: usize = 24;
 
+/// Place that is proposed if every draw fell outside the interval, as with a kernel far beyond an endpoint.
+const MIDDLE: f64 = 0.5;
+
 /// Densities of the good points and of the others, along one dimension.
 struct Estimator {
     good: Density,
@@ -91,10 +96,18 @@ struct Estimator {
 impl Estimator {
     /// Draws a place in the unit interval.
     fn place<R: Rng>(&self, generator: &mut R) -> f64 {
-        let candidates = (0..CANDIDATES).map(|_| self.good.draw(generator));
-        let rated = candidates.map(|place| (self.good.log(place) - self.others.log(place), place));
-        // The middle for an empty list, which cannot occur.
-        rated.max_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.5, |(_, place)| place)
+        let mut rated = || {
+            let place = self.good.draw(generator);
+            (self.good.log(place) - self.others.log(place), place)
+        };
+        let mut best = rated();
+        for _ in 1..CANDIDATES {
+            let next = rated();
+            if next.0.total_cmp(&best.0).is_ge() {
+                best = next;
+            }
+        }
+        best.1
     }
 }
 
@@ -152,12 +165,11 @@ impl Density {
                 let mut draw = || {
                     let number = generator.random_range(0..kernels.len());
                     let standard: f64 = StandardNormal.sample(generator);
-                    // There is always a kernel; the middle would be the uninformed answer.
-                    kernels.get(number).map_or(0.5, |(center, width)| center + width * standard)
+                    let (center, width) = kernels[number];
+                    center + width * standard
                 };
                 let drawn = std::iter::repeat_with(&mut draw).take(MOST_DRAWS);
-                // The middle if every draw fell outside, as with a kernel far beyond an endpoint.
-                drawn.into_iter().find(|place| (0.0..1.0).contains(place)).unwrap_or(0.5)
+                drawn.into_iter().find(|place| (0.0..1.0).contains(place)).unwrap_or(MIDDLE)
             }
             Self::Weights(weights) => {
                 let mut left = generator.random::<f64>() * weights.iter().sum::<f64>();
@@ -179,7 +191,6 @@ impl Density {
                 (kernels.iter().map(kernel).sum::<f64>() / kernels.len() as f64).ln()
             }
             Self::Weights(weights) => {
-                // A place beyond the last choice has no weight.
                 let weight = weights.get((place * weights.len() as f64) as usize).copied().unwrap_or(0.0);
                 (weight / weights.iter().sum::<f64>()).ln()
             }

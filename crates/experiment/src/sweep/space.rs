@@ -108,15 +108,13 @@ impl Dimension {
     /// Returns the override for a place in the unit interval.
     #[must_use]
     pub fn at(&self, place: f64) -> String {
-        let value = match &self.domain {
+        match &self.domain {
             Domain::Choice(values) => {
                 let number = ((place * values.len() as f64) as usize).min(values.len().saturating_sub(1));
-                // Every choice has values; an axis without values was refused when it was parsed.
-                values.get(number).cloned().unwrap_or_default()
+                format!("{}={}", self.key, values.get(number).map_or("", String::as_str))
             }
-            Domain::Range(range) => range.text(place),
-        };
-        format!("{}={value}", self.key)
+            Domain::Range(range) => format!("{}={}", self.key, range.text(place)),
+        }
     }
 
     /// Returns the place in the unit interval of an override's value; `None` if the domain does not contain

@@ -73,8 +73,8 @@ fn change(blocks: &Blocks, error: f64) -> f64 {
     // A fit of the wrong kind has large residuals, which hide nothing of the swing.
     let least = (4.0 * error).min(VISIBLE * largest);
     let visible = blocks.amplitudes.iter().rposition(|value| value.norm() > least);
-    // Without a visible block there is no change to see.
-    let visible = blocks.amplitudes.get(..=visible.unwrap_or(0)).unwrap_or_default();
+    let visible = visible.map_or(1, |last| last + 1).min(blocks.amplitudes.len());
+    let (visible, _) = blocks.amplitudes.split_at(visible);
     let (first, last) = visible.split_at(visible.len() / 2);
     let turn = |half: &[Complex<f64>]| {
         let turns = half.windows(2).filter_map(|pair| match pair {

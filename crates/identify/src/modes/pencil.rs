@@ -5,6 +5,11 @@
 //! has the rank of the number of lines; the shift of its signal space by one row has the lines' poles as
 //! eigenvalues (Kung 1978; Hua, Sarkar 1990, equation 14).
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "rows and columns of the Hankel matrix add up to the number of amplitudes"
+)]
+
 use super::fit::Line;
 use super::samples::Samples;
 use nalgebra::{Complex, DMatrix, Matrix2, SVD};
@@ -47,12 +52,12 @@ impl Blocks {
     /// Returns the lines that one (`order` 1) or two (`order` 2) poles describe best.
     pub(super) fn lines(&self, order: usize) -> Vec<Line> {
         // Too few blocks have no poles: other first guesses remain.
-        let poles = poles(&self.amplitudes, order).unwrap_or_default();
+        let poles = poles(&self.amplitudes, order);
         let line = |pole: &Complex<f64>| {
             let logarithm = pole.ln() / self.width;
             Line { omega: self.omega + logarithm.im, decay: -logarithm.re }
         };
-        let lines = poles.iter().filter(|pole| pole.norm() > 0.0).map(line);
+        let lines = poles.iter().flatten().filter(|pole| pole.norm() > 0.0).map(line);
         lines.filter(|line| line.omega > 0.0 && line.decay.is_finite()).map(Line::bounded).collect()
     }
 }
@@ -63,9 +68,7 @@ fn poles(amplitudes: &[Complex<f64>], order: usize) -> Option<Vec<Complex<f64>>>
     if rows < order + 2 {
         return None;
     }
-    // Every entry of a Hankel matrix of this size exists.
-    let entry = |row: usize, column: usize| amplitudes.get(row + column).copied().unwrap_or_default();
-    let hankel = DMatrix::from_fn(rows, columns, entry);
+    let hankel = DMatrix::from_fn(rows, columns, |row, column| amplitudes[row + column]);
     let left = SVD::try_new(hankel, true, false, 1e-12, 1000)?.u?;
     let space = left.columns(0, order);
     let upper = space.rows(0, rows - 1);

@@ -75,8 +75,7 @@ impl Spectrum {
         let from = ((omega - half) / self.spacing).max(1.0) as usize;
         let to = ((omega + half) / self.spacing).max(1.0) as usize;
         let to = to.saturating_add(1).min(self.powers.len());
-        // A band beyond the spectrum has no powers.
-        self.powers.get(from..to).unwrap_or_default()
+        self.powers.get(from..to).unwrap_or(&[])
     }
 
     /// Returns the variance per sample of white noise as strong as the residuals beside a frequency, for a

@@ -4,7 +4,7 @@
 //! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of the one-step error (Ljung, System Identification, 2nd
 //! ed. 1999, section 4.2). The order is the one whose free run has the smallest validation error.
 
-use crate::data::DataSet;
+use crate::data::{DataSet, span_s};
 use crate::judge::validation_error;
 use crate::linear::least_squares;
 use crate::{Ahead, LearnError, Model, Past, Predicted};
@@ -45,9 +45,8 @@ impl Arx {
     /// # Errors
     /// As [`Self::fit`].
     pub(crate) fn validated(data: &DataSet, ridges: &[f64]) -> Result<Self, LearnError> {
-        // Without a training part no order fits; this is refused below.
-        let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min().unwrap_or(0);
-        let orders = ORDERS.iter().filter(|order| **order < shortest.max(8));
+        let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min();
+        let orders = ORDERS.iter().filter(|order| **order < shortest.map_or(8, |shortest| shortest.max(8)));
         let fitted = orders
             .flat_map(|&order| ridges.iter().map(move |&ridge| (order, ridge)))
             .filter_map(|(order, ridge)| of(data, order, ridge));
@@ -75,10 +74,7 @@ fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
     for part in &data.train {
         for now in (order..part.len()).step_by(stride) {
             rows.extend(latest_first(part.values(), now, order));
-            if driven {
-                // In a driven set, every part has an input.
-                rows.extend(latest_first(part.input().unwrap_or_default(), now, order));
-            }
+            rows.extend(part.input().into_iter().flat_map(|input| latest_first(input, now, order)));
             rows.push(1.0);
             right.push(part.values().get(now).copied()?);
         }
@@ -101,27 +97,20 @@ fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
 
 /// Returns the `count` values before `now`, latest first.
 fn latest_first(values: &[f64], now: usize, count: usize) -> impl Iterator<Item = f64> + '_ {
-    // Callers start at the `count`-th value; with fewer values there is nothing to return.
-    values.get(now.saturating_sub(count)..now).unwrap_or_default().iter().rev().copied()
+    values.split_at(now.min(values.len())).0.iter().rev().take(count).copied()
 }
 
 impl Model for Arx {
     fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
         let order = self.positions.len();
         let known = past.values.len();
-        if known < order {
-            let spacing =
-                // No samples span no time.
-                past.times_s.last().zip(past.times_s.first()).map_or(0.0, |(last, first)| last - first)
-                    / known.saturating_sub(1).max(1) as f64;
+        let Some(first) = past.times_s.first().filter(|_| known >= order) else {
+            let spacing = span_s(past.times_s) / known.saturating_sub(1).max(1) as f64;
             let needed_s = spacing * (order as f64 - 1.0);
             return Err(LearnError::ShortPast { samples: known, needed: order, needed_s });
-        }
+        };
         let mut values = past.values.to_vec();
-        // Without an input, no weight reads it.
-        let inputs = [past.input.unwrap_or_default(), ahead.input.unwrap_or_default()].concat();
-        // Only used in an error message.
-        let first = past.times_s.first().copied().unwrap_or_default();
+        let inputs: Vec<f64> = past.input.into_iter().chain(ahead.input).flatten().copied().collect();
         for (number, time) in ahead.times_s.iter().enumerate() {
             let now = known + number;
             let sum = |weights: &[f64], from: &[f64]| -> f64 {

@@ -8,8 +8,9 @@ pub struct Persistence;
 
 impl Model for Persistence {
     fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
-        // A past has at least eight samples.
-        let last = past.values.last().copied().unwrap_or_default();
+        let Some(&last) = past.values.last() else {
+            return Err(LearnError::ShortPast { samples: 0, needed: 1, needed_s: 0.0 });
+        };
         Ok(Predicted { values: vec![last; ahead.times_s.len()], std: None })
     }
 

@@ -15,6 +15,7 @@ pub use smoothing::{LocalState, local_states};
 pub(crate) use smoothing::{interpolated, local_state};
 pub use split::{Split, SplitKind};
 pub use trajectory::Trajectory;
+pub(crate) use trajectory::span_s;
 pub use windows::{Window, windows};
 
 /// Formats a count with its noun.

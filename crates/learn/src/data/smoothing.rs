@@ -1,5 +1,7 @@
 //! Velocity and acceleration by local polynomials, and interpolation between samples, also at uneven times.
 
+#![allow(clippy::indexing_slicing, reason = "a trajectory has an input for every sample")]
+
 use super::Trajectory;
 use nalgebra::{SMatrix, SVector};
 
@@ -58,8 +60,7 @@ pub(crate) fn local_state(part: &Trajectory, sample: usize, time: f64, half: f64
         position,
         velocity: slope / half,
         acceleration: 2.0 * curvature / (half * half),
-        // Without an input nothing drives the system.
-        input: part.input().and_then(|input| input.get(sample)).copied().unwrap_or(0.0),
+        input: part.input().map_or(0.0, |input| input[sample]),
     })
 }
 

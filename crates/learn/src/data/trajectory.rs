@@ -1,5 +1,7 @@
 //! Trajectories: records, or stretches of records, as learners see them.
 
+#![allow(clippy::indexing_slicing, reason = "the range is clipped to the samples")]
+
 use crate::LearnError;
 
 /// Positions over time, with an optional input.
@@ -12,6 +14,14 @@ pub struct Trajectory {
     times_s: Vec<f64>,
     values: Vec<f64>,
     input: Option<Vec<f64>>,
+}
+
+/// Returns the time from the first of some times to the last; 0 for fewer than two.
+pub(crate) fn span_s(times_s: &[f64]) -> f64 {
+    match times_s {
+        [first, .., last] => last - first,
+        _ => 0.0,
+    }
 }
 
 impl Trajectory {
@@ -89,8 +99,7 @@ impl Trajectory {
     /// Returns the time from the first to the last sample, in seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        // No samples span no time.
-        self.times_s.first().zip(self.times_s.last()).map_or(0.0, |(first, last)| last - first)
+        span_s(&self.times_s)
     }
 
     /// Returns the mean sample rate in Hz; 0 for fewer than two samples.
@@ -104,8 +113,7 @@ impl Trajectory {
     pub fn part(&self, from: usize, to: usize) -> Self {
         let to = to.min(self.len());
         let from = from.min(to);
-        // The range was clipped to the existing samples.
-        let cut = |column: &[f64]| column.get(from..to).unwrap_or_default().to_vec();
+        let cut = |column: &[f64]| column[from..to].to_vec();
         Self {
             name: self.name.clone(),
             times_s: cut(&self.times_s),
@@ -124,8 +132,8 @@ impl Trajectory {
     /// empty.
     #[must_use]
     pub fn samples_within(&self, seconds: f64) -> usize {
-        // Of no samples, none lies within.
-        let end = self.times_s.first().copied().unwrap_or_default() + seconds * (1.0 + 1e-9);
+        let Some(first) = self.times_s.first() else { return 0 };
+        let end = first + seconds * (1.0 + 1e-9);
         self.times_s.partition_point(|&time| time <= end)
     }
 

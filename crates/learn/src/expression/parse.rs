@@ -53,14 +53,12 @@ impl TryFrom<String> for Expression {
 
 impl Reader<'_> {
     fn wrong(&self, problem: impl Into<String>) -> Unreadable {
-        // A byte offset within a character cannot be counted; report the start of the text.
-        let at = self.text.get(..self.at).map_or(0, |before| before.chars().count()) + 1;
+        let at = self.text[..self.at].chars().count() + 1;
         Unreadable { text: self.text.to_owned(), at, problem: problem.into() }
     }
 
     fn rest(&self) -> &str {
-        // Beyond the end there is nothing left to read.
-        self.text.get(self.at..).unwrap_or_default()
+        &self.text[self.at..]
     }
 
     /// Skips spaces and returns the next character.
@@ -189,8 +187,7 @@ impl Reader<'_> {
     fn word(&mut self) -> Result<Expression, Unreadable> {
         let rest = self.rest();
         let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-        // The length was found in this text.
-        let word = rest.get(..length).unwrap_or_default().to_owned();
+        let word = rest[..length].to_owned();
         if let Some(variable) = Variable::ALL.into_iter().find(|variable| variable.name() == word) {
             self.at += length;
             return Ok(Expression::Variable(variable));

@@ -52,6 +52,11 @@ pub struct Posterior {
 const DRAWS: usize = 24;
 
 impl Posterior {
+    /// Draws as [`Self::normal`] does; empty without a covariance.
+    pub(crate) fn of(mean: &[f64], covariance: Option<&DMatrix<f64>>, seed: &Seed) -> Self {
+        covariance.map_or_else(Self::default, |covariance| Self::normal(mean, covariance, seed))
+    }
+
     /// Draws from a normal distribution around `mean`; empty if the covariance is not positive definite.
     #[must_use]
     pub fn normal(mean: &[f64], covariance: &DMatrix<f64>, seed: &Seed) -> Self {
@@ -159,8 +164,7 @@ impl FlowModel {
 
     fn ahead(&self, weights: &[f64], state: State, all: &Joined) -> Result<Vec<f64>, LearnError> {
         let motion = self.run(weights).motion(state, &all.times_s, all.input.as_deref(), false)?;
-        // If the past covers all times, nothing lies ahead.
-        Ok(motion.positions.get(all.past..).unwrap_or_default().to_vec())
+        Ok(motion.positions.into_iter().skip(all.past).collect())
     }
 
     /// Restores a stored model; `field` rebuilds the field from its form.

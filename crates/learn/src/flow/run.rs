@@ -6,6 +6,8 @@
 //! discrete steps. At a reversal, the velocity's sensitivity jumps by the factor f⁺/f⁻, the saltation (Leine,
 //! Nijmeijer 2004, section 7.3); at rest it vanishes.
 
+#![allow(clippy::indexing_slicing, reason = "two times have a first one")]
+
 use super::field::{Field, Slope};
 use super::start::State;
 use crate::{LearnError, Place};
@@ -88,15 +90,11 @@ impl Run<'_> {
         };
         let mut motion = Motion { positions: vec![start.position], ..Motion::default() };
         going.note(&mut motion);
-        // Only used in an error message.
-        let first = times_s.first().copied().unwrap_or_default();
-        // Without an input nothing drives the system.
-        let at = |number: usize| input.and_then(|input| input.get(number)).copied().unwrap_or(0.0);
-        for (number, (&from, &to)) in times_s.iter().zip(times_s.iter().skip(1)).enumerate() {
-            let end = if self.hold != Hold::Zero { at(number + 1) } else { at(number) };
-            going.interval(to - from, at(number), end);
+        let inputs = input.map_or_else(|| vec![0.0; times_s.len()], <[f64]>::to_vec);
+        for (&[from, to], &[before, after]) in times_s.array_windows().zip(inputs.array_windows()) {
+            going.interval(to - from, before, if self.hold == Hold::Zero { before } else { after });
             if !(going.state.position.abs() <= self.bound && going.state.velocity.is_finite()) {
-                return Err(LearnError::Diverged { time_s: to - first, bound: self.bound });
+                return Err(LearnError::Diverged { time_s: to - times_s[0], bound: self.bound });
             }
             motion.positions.push(going.state.position);
             going.note(&mut motion);

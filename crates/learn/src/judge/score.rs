@@ -1,6 +1,8 @@
 //! Scores of free runs, prediction horizon, one-step error, and coverage.
 
-use crate::data::{DataSet, Trajectory};
+#![allow(clippy::indexing_slicing, reason = "a warm-up ends within its part")]
+
+use crate::data::{DataSet, Trajectory, span_s};
 use crate::{Ahead, LearnError, Model, Past, Predicted};
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
@@ -44,24 +46,20 @@ const FLOORS: f64 = 3.0;
 
 fn past(part: &Trajectory, from: usize, to: usize) -> Past<'_> {
     Past {
-        // The range lies within the part: a data set refuses shorter parts.
-        times_s: part.times_s().get(from..to).unwrap_or_default(),
-        // As above.
-        values: part.values().get(from..to).unwrap_or_default(),
-        input: part.input().and_then(|input| input.get(from..to)),
+        times_s: &part.times_s()[from..to],
+        values: &part.values()[from..to],
+        input: part.input().map(|input| &input[from..to]),
     }
 }
 
 fn ahead(part: &Trajectory, from: usize, to: usize) -> Ahead<'_> {
-    Ahead {
-        // The range lies within the part: a data set refuses shorter parts.
-        times_s: part.times_s().get(from..to).unwrap_or_default(),
-        input: part.input().and_then(|input| input.get(from..to)),
-    }
+    Ahead { times_s: &part.times_s()[from..to], input: part.input().map(|input| &input[from..to]) }
 }
 
+/// Returns the number of samples of a part that a prediction starts from; at most all.
 fn warm_up(part: &Trajectory, data: &DataSet) -> usize {
-    part.samples_within(data.warm_up_s).clamp(8, part.len().saturating_sub(1).max(8))
+    let most = part.len().saturating_sub(1).max(8);
+    part.samples_within(data.warm_up_s).clamp(8, most).min(part.len())
 }
 
 /// Runs a model freely over each test trajectory from its warm-up, with bands if the model states them.
@@ -72,8 +70,7 @@ pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
         Run {
             name: part.name().to_owned(),
             times_s: ahead(part, now, end).times_s.to_vec(),
-            // The warm-up ends within the part.
-            observed: part.values().get(now..).unwrap_or_default().to_vec(),
+            observed: part.values()[now..].to_vec(),
             predicted: model.banded_run(&past(part, 0, now), &ahead(part, now, end)),
         }
     };
@@ -92,15 +89,12 @@ pub fn runs_on_noise(model: &dyn Model, data: &DataSet, seed: &Seed) -> Vec<Run>
         let values = noise_like(part.values(), &seed.child("position"));
         let input = part.input().map(|input| noise_like(input, &seed.child("input")));
         let (before, after) = (past(part, 0, now), ahead(part, now, end));
-        // There are as many noise values as samples of the part.
-        let values = values.get(..now).unwrap_or_default();
-        let past = Past { values, input: cut(&input, 0, now), ..before };
+        let past = Past { values: &values[..now], input: cut(&input, 0, now), ..before };
         let ahead = Ahead { input: cut(&input, now, end), ..after };
         Run {
             name: part.name().to_owned(),
             times_s: after.times_s.to_vec(),
-            // The warm-up ends within the part.
-            observed: part.values().get(now..).unwrap_or_default().to_vec(),
+            observed: part.values()[now..].to_vec(),
             predicted: model.free_run(&past, &ahead),
         }
     };
@@ -134,8 +128,7 @@ pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
         let Ok(found) = model.free_run(&past(part, 0, now), &ahead(part, now, end)) else {
             return f64::INFINITY;
         };
-        // The warm-up ends within the part.
-        let observed = part.values().get(now..).unwrap_or_default();
+        let observed = &part.values()[now..];
         sum += observed.iter().zip(&found.values).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         count += observed.len();
     }
@@ -185,10 +178,8 @@ fn finite(error: f64) -> f64 {
 
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
-    let (low, high) = (values.len().saturating_sub(1) / 2, values.len() / 2);
-    // Without a test part, nothing was predicted for any time.
-    let at = |place: usize| values.get(place).copied().unwrap_or(0.0);
-    0.5 * (at(low) + at(high))
+    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
+    0.5 * (values[last / 2] + values[values.len() / 2])
 }
 
 /// Returns the time from the first sample until the root mean square error over the last `window_s` exceeds
@@ -200,8 +191,7 @@ fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
     for (place, (&time, square)) in times_s.iter().zip(&squares).enumerate() {
         sum += square;
         while times_s.get(oldest).is_some_and(|&begin| begin < time - window_s) {
-            // There are as many squares as times.
-            sum -= squares.get(oldest).copied().unwrap_or(0.0);
+            sum -= squares[oldest];
             oldest += 1;
         }
         let full = time - first >= window_s;
@@ -210,8 +200,7 @@ fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
             return (time - first - window_s).max(0.0);
         }
     }
-    // There is a first time, hence a last one.
-    times_s.last().map_or(0.0, |last| last - first)
+    span_s(times_s)
 }
 
 fn one_step(model: &dyn Model, data: &DataSet) -> f64 {

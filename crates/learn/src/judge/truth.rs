@@ -116,7 +116,6 @@ impl Truth {
             if negligible && learned.is_none() {
                 return None;
             }
-            // A law that lacks a term has a weight of zero for it.
             let value = learned.map_or(0.0, |own| own.value);
             let truth = if negligible { 0.0 } else { truth };
             let std_errors = learned.and_then(|own| own.std_error).map(|error| (value - truth) / error);

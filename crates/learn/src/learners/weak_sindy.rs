@@ -7,6 +7,8 @@
 //!
 //! Messenger, Bortz, Multiscale Modeling and Simulation 19 (2021) 1474.
 
+#![allow(clippy::indexing_slicing, reason = "the range is found among the states")]
+
 use super::library::{Regression, Term, restore};
 use super::sindy::{FIELDS, SparseSettings};
 use crate::data::{DataSet, LocalState, Trajectory, local_states};
@@ -66,9 +68,7 @@ pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
             let center = first.time_s + half + window as f64 * step;
             let from = states.partition_point(|state| state.time_s < center - half);
             let to = states.partition_point(|state| state.time_s <= center + half);
-            // Both indices were found among the states.
-            let inside = states.get(from..to).unwrap_or_default();
-            let (row, sum) = weak_row(part, inside, center, half, terms);
+            let (row, sum) = weak_row(part, &states[from..to], center, half, terms);
             rows.extend(row);
             right.push(sum);
             groups.push(group + window / 8);

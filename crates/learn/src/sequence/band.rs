@@ -131,10 +131,10 @@ impl Band {
     /// Returns the local amplitude of a prediction at every time: √2 times the root mean square within half a
     /// window on either side, plus the floor.
     fn amplitudes(&self, leads_s: &[f64], predicted: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0];
+        let (mut sum, mut sums) = (0.0, vec![0.0]);
         for value in predicted {
-            // The list starts with a number.
-            sums.push(sums.last().copied().unwrap_or_default() + (value - self.center).powi(2));
+            sum += (value - self.center).powi(2);
+            sums.push(sum);
         }
         let amplitude = |lead: &f64| {
             let from = leads_s.partition_point(|own| *own < lead - 0.5 * self.window_s);

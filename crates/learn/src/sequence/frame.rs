@@ -1,5 +1,7 @@
 //! Units, sample times and the linear prediction that a sequence model corrects.
 
+#![allow(clippy::indexing_slicing, reason = "a trajectory has an input for every sample")]
+
 use super::Settings;
 use super::grid::evened;
 use crate::baselines::Arx;
@@ -168,15 +170,11 @@ impl Frame {
     fn measure(&mut self, train: &[Trajectory]) {
         let (mut squares, mut count) = (vec![0.0; self.block], 0_usize);
         for part in train {
-            let starts = (0..(part.len() + 1).saturating_sub(self.length())).step_by((self.block / 2).max(1));
-            for from in starts {
-                // Starts leave room for past and block.
-                let positions = part.values().get(from..from + self.past).unwrap_or_default();
-                // As above.
-                let ahead = part.values().get(from + self.past..from + self.length()).unwrap_or_default();
-                let inputs = part.input().and_then(|input| input.get(from..from + self.length()));
-                // Without an input, no weight reads it.
-                let predicted = self.linear(positions, inputs.unwrap_or_default());
+            let windows = part.values().windows(self.length()).enumerate();
+            for (from, window) in windows.step_by((self.block / 2).max(1)) {
+                let (positions, ahead) = window.split_at(self.past);
+                let inputs = part.input().map_or(&[][..], |input| &input[from..from + self.length()]);
+                let predicted = self.linear(positions, inputs);
                 for ((square, own), observed) in squares.iter_mut().zip(predicted).zip(ahead) {
                     *square += (own - observed).powi(2);
                 }

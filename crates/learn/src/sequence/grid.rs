@@ -1,25 +1,24 @@
 //! Resampling to even times: sequence models count samples, records have timestamps.
 
-use crate::data::{Trajectory, interpolated};
+#![allow(clippy::indexing_slicing, reason = "indices are clipped to the samples")]
+
+use crate::data::{Trajectory, interpolated, span_s};
 use crate::{Ahead, LearnError, Past};
 use dynamics::Hold;
 
 /// Returns the mean of an input over `interval` seconds from `time` on. Before the first and after the last
 /// sample, the input is constant.
 fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f64)) -> f64 {
+    debug_assert!(!times.is_empty() && times.len() == input.len());
     let at = |time: f64| {
         let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
         let before = next.saturating_sub(1);
-        // A trajectory has samples, and indices are clipped to them.
-        let pick = |column: &[f64], place: usize| column.get(place).copied().unwrap_or_default();
-        let (from, to) = (pick(times, before), pick(times, next));
+        let (from, to) = (times[before], times[next]);
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
         match hold {
-            Hold::Linear | Hold::BandLimited => {
-                pick(input, before) + share * (pick(input, next) - pick(input, before))
-            }
-            Hold::Zero if share < 1.0 => pick(input, before),
-            Hold::Zero => pick(input, next),
+            Hold::Linear | Hold::BandLimited => input[before] + share * (input[next] - input[before]),
+            Hold::Zero if share < 1.0 => input[before],
+            Hold::Zero => input[next],
         }
     };
     // Midpoint rule: with even timestamps, the first midpoint reads the sample itself.
@@ -30,8 +29,7 @@ fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f6
 
 /// Resamples a trajectory at even times from its first sample on.
 pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Trajectory, LearnError> {
-    // A trajectory has samples.
-    let first = part.times_s().first().copied().unwrap_or_default();
+    let Some(&first) = part.times_s().first() else { return Ok(part.clone()) };
     let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
     let times: Vec<f64> = (0..count).map(|at| first + at as f64 * interval).collect();
     let values = times.iter().map(|&time| interpolated(part.times_s(), part.values(), time)).collect();
@@ -44,36 +42,46 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Tra
 
 /// Returns the positions at the last `count` even times of a past; the last one is its last sample.
 pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Result<Vec<f64>, LearnError> {
-    let (first, last) = (past.times_s.first().copied(), past.times_s.last().copied());
-    // A past without samples is too short, which is refused below.
-    let (first, last) = (first.unwrap_or_default(), last.unwrap_or_default());
     // Jitter may shorten a past by part of an interval; the cubic interpolation bridges this gap.
-    let there = ((last - first) / interval + 0.5).floor() as usize + 1;
-    if there < count || past.times_s.len() < 4 {
+    let there = (span_s(past.times_s) / interval + 0.5).floor() as usize + 1;
+    let is_long = there >= count && past.times_s.len() >= 4;
+    let Some(last) = past.times_s.last().filter(|_| is_long) else {
         return Err(LearnError::ShortPast {
             samples: there.min(past.times_s.len()),
             needed: count,
             needed_s: (count as f64 - 1.0) * interval,
         });
-    }
+    };
     let time = |back: usize| last - back as f64 * interval;
     Ok((0..count).rev().map(|back| interpolated(past.times_s, past.values, time(back))).collect())
 }
 
 /// Returns the input at the last `before` even times of a past (including its last sample) and at `after`
 /// later times; `None` without an input.
+///
+/// # Errors
+/// [`LearnError::UnequalColumns`] if there is not one input for every time.
 pub(super) fn inputs(
     (past, ahead): (&Past<'_>, &Ahead<'_>),
     hold: Hold,
     interval: f64,
     [before, after]: [usize; 2],
-) -> Option<Vec<f64>> {
-    let input = [past.input?, ahead.input?].concat();
-    let times = [past.times_s, ahead.times_s].concat();
-    // A past has at least eight samples.
-    let last = past.times_s.last().copied().unwrap_or_default();
+) -> Result<Option<Vec<f64>>, LearnError> {
+    let (Some(last), Some(past_input), Some(ahead_input)) = (past.times_s.last(), past.input, ahead.input)
+    else {
+        return Ok(None);
+    };
+    let (input, times) = ([past_input, ahead_input].concat(), [past.times_s, ahead.times_s].concat());
+    if input.len() != times.len() {
+        return Err(LearnError::UnequalColumns {
+            record: "past and future".to_owned(),
+            column: "input",
+            found: input.len(),
+            times: times.len(),
+        });
+    }
     let time = |at: usize| last + (at as f64 - before as f64 + 1.0) * interval;
-    Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect())
+    Ok(Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect()))
 }
 
 /// Interpolates values at the times of a record from values at even times that start at `first`.

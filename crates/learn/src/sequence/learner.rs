@@ -62,8 +62,7 @@ pub fn restore<A: Architecture>(stored: &Stored) -> Result<Box<dyn Model>, Learn
 
 /// Returns the windows of the validation part: long ones of equal length, evenly chosen.
 fn held(parts: &[Trajectory], past: usize, block: usize) -> Vec<Window> {
-    // Without a validation part there is no window.
-    let shortest = parts.iter().map(Trajectory::len).min().unwrap_or(0);
+    let Some(shortest) = parts.iter().map(Trajectory::len).min() else { return Vec::new() };
     let blocks = (shortest.saturating_sub(past) / block).clamp(1, HELD_BLOCKS);
     let all = windows(parts, past, blocks * block, blocks * block);
     let stride = all.len().div_ceil(HELD_WINDOWS).max(1);
@@ -74,9 +73,8 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
     fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
         let settings = &self.settings;
         let Framed { frame, train: parts, validation } = Framed::new(data, settings)?;
-        // Without a training part there is no window, which the training refuses.
-        let longest = parts.iter().map(Trajectory::len).max().unwrap_or(0);
-        let blocks = (longest.saturating_sub(frame.past) / frame.block).clamp(1, settings.blocks);
+        let blocks = parts.iter().map(|part| part.len().saturating_sub(frame.past) / frame.block);
+        let blocks = blocks.fold(1, usize::max).min(settings.blocks);
         let future = blocks * frame.block;
         let stride = windows(&parts, frame.past, future, 1).len().div_ceil(settings.windows).max(1);
         let device = device_of(settings.device, settings.precision)?;

@@ -99,11 +99,9 @@ impl<A: Architecture> SequenceModel<A> {
     }
 }
 
-/// Returns the times ahead, counted from the end of the past.
+/// Returns the times ahead, counted from the end of the past; empty for an empty past.
 fn leads(past: &Past<'_>, ahead: &Ahead<'_>) -> Vec<f64> {
-    // A past has at least eight samples.
-    let now = past.times_s.last().copied().unwrap_or_default();
-    ahead.times_s.iter().map(|time| time - now).collect()
+    past.times_s.last().map_or_else(Vec::new, |now| ahead.times_s.iter().map(|time| time - now).collect())
 }
 
 impl<A: Architecture> Model for SequenceModel<A> {
@@ -118,7 +116,7 @@ impl<A: Architecture> Model for SequenceModel<A> {
         let start = past_positions(past, frame.interval_s, frame.past)?;
         let mut positions: Vec<f64> = start.iter().map(|&value| frame.position_in(value)).collect();
         positions.resize(frame.past + after, 0.0);
-        let given = inputs((past, ahead), frame.hold, frame.interval_s, [frame.past, after]);
+        let given = inputs((past, ahead), frame.hold, frame.interval_s, [frame.past, after])?;
         let rows = Rows {
             count: 1,
             length: positions.len(),

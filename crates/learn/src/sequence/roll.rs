@@ -4,6 +4,8 @@
 //! has its own tape. A forward pass keeps only the positions; the backward pass recomputes each block, given
 //! the adjoint of its prediction from all later blocks.
 
+#![allow(clippy::indexing_slicing, reason = "windows and blocks lie within their trajectories")]
+
 use super::frame::{Frame, OnDevice};
 use super::{Architecture, Batch, Network, Sizes};
 use crate::LearnError;
@@ -38,27 +40,21 @@ pub(super) struct Rows {
 
 impl Rows {
     fn of(parts: &[Trajectory], windows: &[Window]) -> Self {
-        let column = |of: &dyn Fn(&Trajectory) -> Option<&[f64]>| -> Option<Vec<f64>> {
-            let rows =
-                windows.iter().map(|window| of(parts.get(window.trajectory)?)?.get(window.from..window.to));
-            Some(rows.collect::<Option<Vec<_>>>()?.concat())
-        };
-        let positions = column(&|part| Some(part.values()));
-        debug_assert!(positions.is_some(), "windows lie within their parts");
+        let positions = |window: &Window| &parts[window.trajectory].values()[window.from..window.to];
+        let input = |window: &Window| Some(&parts[window.trajectory].input()?[window.from..window.to]);
+        let positions = windows.iter().map(positions).collect::<Vec<_>>().concat();
         Self {
             count: windows.len(),
-            // Without a window there is no row.
-            length: windows.first().map_or(0, |window| window.to - window.from),
-            positions: positions.unwrap_or_default(), // Asserted above.
-            inputs: column(&|part| part.input()),
+            length: positions.len() / windows.len().max(1),
+            positions,
+            inputs: windows.iter().map(input).collect::<Option<Vec<_>>>().map(|rows| rows.concat()),
         }
     }
 
     /// Returns the samples `from..from + length` of every row.
     fn cut(&self, of: &[f64], from: usize, length: usize) -> Vec<f64> {
         let rows = of.chunks(self.length.max(1));
-        // Blocks end within their rows.
-        rows.flat_map(|row| row.get(from..from + length).unwrap_or_default().iter().copied()).collect()
+        rows.flat_map(|row| row[from..from + length].iter().copied()).collect()
     }
 
     fn input(&self, from: usize, length: usize, device: &Device) -> Option<Tensor<2>> {

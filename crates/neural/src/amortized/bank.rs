@@ -112,8 +112,7 @@ impl Prior {
                 place += 1.0;
             }
         }
-        // At least FEWEST peaks are drawn; an empty list is not scaled.
-        let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
+        let [first, .., last] = *times else { return times };
         times.iter().map(|time| 2.0 * (time - first) / (last - first) - 1.0).collect()
     }
 }

@@ -1,6 +1,8 @@
 //! Singular values and vectors by one-sided Jacobi rotations.
 
-use super::vectors::{UNIT_ROUNDOFF, diagonal, dot, length};
+#![allow(clippy::indexing_slicing, reason = "a square matrix has a row for every column")]
+
+use super::vectors::{UNIT_ROUNDOFF, diagonal, dot, length, rows};
 
 /// Most sweeps over all pairs of columns; convergence is quadratic, so that six to ten are usual.
 const MOST_SWEEPS: usize = 60;
@@ -18,9 +20,7 @@ pub(super) struct Decomposition {
 pub(super) fn decompose(mut columns: Vec<Vec<f64>>) -> Decomposition {
     debug_assert!(columns.iter().all(|column| Some(column.len()) == columns.first().map(Vec::len)));
     let mut right: Vec<Vec<f64>> = diagonal(&vec![1.0; columns.len()]).collect();
-    // Without columns there are no rows.
-    let rows = columns.first().map_or(0, Vec::len);
-    let tolerance = (rows as f64).sqrt() * UNIT_ROUNDOFF;
+    let tolerance = (rows(&columns) as f64).sqrt() * UNIT_ROUNDOFF;
     for _ in 0..MOST_SWEEPS {
         let mut rotated = false;
         for second in 1..columns.len() {
@@ -76,7 +76,5 @@ fn rotate(a: &mut [f64], b: &mut [f64], cosine: f64, sine: f64) {
 /// Returns the rows of a square matrix given by columns.
 pub(super) fn transpose(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     debug_assert!(columns.iter().all(|column| column.len() == columns.len()), "a square matrix");
-    // Without columns there are no rows.
-    let rows = columns.first().map_or(0, Vec::len);
-    (0..rows).map(|row| columns.iter().filter_map(|column| column.get(row).copied()).collect()).collect()
+    (0..columns.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
 }

@@ -208,7 +208,7 @@ fn between(short: f64, short_slope: f64, long: f64, long_slope: Option<f64>) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::{Pair, Point, between, direction, explain, minimize, search};
+    use super::{OracleError, Pair, Point, between, direction, explain, minimize, search};
     use crate::classical::problem::{Limits, SmoothFunction};
     use crate::classical::vectors::{dot, length};
     use crate::classical::{Minimum, Reached};
@@ -262,7 +262,8 @@ mod tests {
 
     #[test]
     fn a_start_without_a_value_is_refused() {
-        assert!(minimize(&Valley, &[f64::NAN, 0.0], Limits { tolerance: 1e-12, max_steps: 9 }).is_err());
+        let refused = minimize(&Valley, &[f64::NAN, 0.0], Limits { tolerance: 1e-12, max_steps: 9 });
+        assert!(matches!(refused, Err(OracleError::NotFinite { row: 1 })), "{refused:?}");
     }
 
     /// Function ½·Σ i·xᵢ².

@@ -1,7 +1,7 @@
 //! Method 3: the normal equations, by Cholesky's factorization.
 
 use super::linear::{LinearSolution, Solved, Stability, Triangle, finish, fit_line, scale, singular};
-use super::vectors::{UNIT_ROUNDOFF, dot};
+use super::vectors::{UNIT_ROUNDOFF, dot, rows};
 use super::{ClassicalFit, ClassicalRoute};
 use crate::error::OracleError;
 use envelope::Envelope;
@@ -47,8 +47,7 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, Or
 /// Returns R with RᵀR = AᵀA for unit columns. A pivot that is nothing but rounding is refused.
 fn cholesky(columns: &[Vec<f64>]) -> Result<Triangle, OracleError> {
     let mut triangle = Triangle(Vec::new());
-    // Without columns there is no noise, and nothing to refuse.
-    let noise = columns.len() as f64 * columns.first().map_or(0.0, |c| c.len() as f64).sqrt() * UNIT_ROUNDOFF;
+    let noise = columns.len() as f64 * (rows(columns) as f64).sqrt() * UNIT_ROUNDOFF;
     for (count, column) in columns.iter().enumerate() {
         let products: Vec<f64> = columns.iter().take(count).map(|earlier| dot(earlier, column)).collect();
         let mut entries = triangle.solve_transposed(&products);

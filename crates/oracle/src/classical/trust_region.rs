@@ -236,7 +236,7 @@ fn orthogonality(here: &Local, held: &[bool]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bounds, minimize};
+    use super::{Bounds, OracleError, minimize};
     use crate::classical::problem::Limits;
     use crate::classical::{LeastSquaresProblem, LeastSquaresSolution, Reached};
 
@@ -312,7 +312,9 @@ mod tests {
     fn bounds_without_room_are_refused() {
         let message = Bounds::new(vec![0.0, 1.0], vec![1.0, 1.0]).unwrap_err().to_string();
         assert!(message.contains("parameter 2 has no room between its bounds 1 and 1"), "{message}");
-        assert!(Bounds::new(vec![0.0], vec![1.0, 2.0]).is_err());
-        assert!(minimize(&Valley, &[0.0, 0.0], &Bounds::none(1), LIMITS).is_err());
+        let unequal = Bounds::new(vec![0.0], vec![1.0, 2.0]);
+        assert!(matches!(unequal, Err(OracleError::Bounds { parameter: 2, .. })), "{unequal:?}");
+        let too_few = minimize(&Valley, &[0.0, 0.0], &Bounds::none(1), LIMITS);
+        assert!(matches!(too_few, Err(OracleError::Bounds { parameter: 2, .. })), "{too_few:?}");
     }
 }

@@ -64,12 +64,15 @@ pub(super) fn finite(a: &[f64]) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
+/// Returns the number of rows of a matrix given by columns; 0 without columns.
+pub(super) fn rows(columns: &[Vec<f64>]) -> usize {
+    columns.first().map_or(0, Vec::len)
+}
+
 /// Returns the product of a matrix given by columns with a vector.
 pub(super) fn combine(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     debug_assert_eq!(columns.len(), weights.len(), "a weight for each column");
-    // Without columns there are no rows.
-    let rows = columns.first().map_or(0, Vec::len);
-    let mut sum = vec![0.0; rows];
+    let mut sum = vec![0.0; rows(columns)];
     for (column, weight) in columns.iter().zip(weights) {
         add_scaled(&mut sum, *weight, column);
     }

@@ -118,8 +118,7 @@ fn object_of(object: &Map<String, Value>, bytes: usize) -> Result<String, String
         .collect();
     let composed = |(_, items): &&Series<'_>| items.iter().all(|item| item.is_object() || item.is_array());
     let length = |(_, items): &Series<'_>| items.len();
-    // Without arrays there are no columns.
-    let longest = arrays.iter().map(length).max().unwrap_or(0);
+    let longest = arrays.iter().map(length).fold(0, usize::max);
     let inside: Vec<&Series<'_>> =
         arrays.iter().filter(|series| length(series) == longest && composed(series)).collect();
     let others = |name: &str| {
@@ -189,8 +188,7 @@ fn array_of(
     if let Some(width) = width(items) {
         // The first of the rows may hold the names.
         let header = items.first().and_then(|row| words(&row.as_array()?.iter().collect::<Vec<_>>()));
-        // A header alone has no rows below it.
-        let rows = items.get(usize::from(header.is_some())..).unwrap_or_default();
+        let (_, rows) = items.split_at(usize::from(header.is_some()));
         if width.saturating_mul(rows.len()) > bytes {
             return Err("its rows have too different lengths".to_owned());
         }

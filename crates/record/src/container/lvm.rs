@@ -98,8 +98,7 @@ fn segments(text: &str) -> Vec<Segment<'_>> {
     let new = || Segment { timed, commas, ..Segment::default() };
     let (mut found, mut open, mut special) = (Vec::new(), new(), false);
     for cells in body.map(|line| line.split(separator).map(str::trim).collect::<Vec<&str>>()) {
-        // A line has at least one cell.
-        let first = cells.first().copied().unwrap_or_default();
+        let first = cells.first().copied().unwrap_or("");
         special = (special || first == "***Start_Special***") && first != "***End_Special***";
         if special || first.starts_with("***") || cells.iter().all(|cell| cell.is_empty()) {
             continue;
@@ -169,8 +168,7 @@ impl<'a> Segment<'a> {
 
     /// Returns the name of a channel, with its unit if the name does not state one.
     fn name(&self, at: usize) -> String {
-        // The column is one of the titles.
-        let title = self.titles.get(at).copied().unwrap_or_default();
+        let title = self.titles.get(at).copied().unwrap_or("");
         match self.tag("Y_Unit_Label", at) {
             Some(unit) if !title.contains(unit) => format!("{title} [{unit}]"),
             _ => title.to_owned(),
@@ -194,7 +192,7 @@ impl<'a> Segment<'a> {
                 cells.push(time.map_or(Cell::Missing, |time| Cell::Float(time + offset)));
             }
             // A row that ends before the channel has an empty cell there.
-            let text = self.rows.get(row).and_then(|row| row.get(*at)).copied().unwrap_or_default();
+            let text = self.rows.get(row).and_then(|row| row.get(*at)).copied().unwrap_or("");
             cells.push(match self.number(text) {
                 Some(number) => Cell::Float(number),
                 None if is_missing(text) => Cell::Missing,

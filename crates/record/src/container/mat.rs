@@ -3,6 +3,8 @@
 //!
 //! Source: The MathWorks, *MAT-File Format*, chapter 1, "Level 5 MAT-File Format".
 
+#![allow(clippy::indexing_slicing, reason = "the end of the header was read")]
+
 use super::bytes::number_at;
 use super::npy::Array;
 use super::npz::{LARGEST, side_by_side};
@@ -69,8 +71,7 @@ fn table(bytes: &[u8]) -> Result<String, String> {
     };
     let mut unpacked: Vec<Cow<'_, [u8]>> = Vec::new();
     let mut size = 0;
-    // The header is there: `get` has read its end.
-    let mut all = Bytes { rest: bytes.get(HEADER..).unwrap_or_default(), big_endian };
+    let mut all = Bytes { rest: &bytes[HEADER..], big_endian };
     while !all.rest.is_empty() {
         let element = all.element().ok_or("it is incomplete: its last variable is cut off")?;
         let content = match element.kind {
@@ -118,7 +119,7 @@ impl<'a> Bytes<'a> {
         };
         let bytes = self.rest.get(start..start.checked_add(length)?)?;
         // The padding of the last element may be missing.
-        self.rest = self.rest.get(whole..).unwrap_or_default();
+        self.rest = self.rest.get(whole..).unwrap_or(&[]);
         Some(Element { kind, bytes })
     }
 

@@ -3,6 +3,8 @@
 //! Source: NumPy Enhancement Proposal 1, *A Simple File Format for NumPy Arrays*, and the documentation of
 //! `numpy.lib.format`; for type codes, that of NumPy's array interface.
 
+#![allow(clippy::indexing_slicing, reason = "the header was read")]
+
 use super::bytes::{length_at, number_at};
 use super::literal::Literal;
 use super::sheet::{Cell, Column, named, unnamed};
@@ -93,8 +95,7 @@ impl<'a> Array<'a> {
         let header = Literal::parse(&header).ok_or_else(incomplete)?;
         let shape = header.get("shape").and_then(Literal::numbers).ok_or_else(incomplete)?;
         let (fields, size) = fields(header.get("descr").ok_or_else(incomplete)?)?;
-        // The bytes after the header, which exist since the header does.
-        let data = bytes.get(start + length..).unwrap_or_default();
+        let data = &bytes[start + length..];
         let fortran = header.get("fortran_order") == Some(&Literal::Truth(true));
         Self::checked(fields, size, &shape, fortran, data)
     }

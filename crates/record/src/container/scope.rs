@@ -24,7 +24,7 @@ fn rigol(text: &str) -> Option<String> {
     for cells in lines {
         let Some(index) = number(&cells, 0) else { continue };
         // A line of an index alone has no values.
-        let values = cells.get(1..channels.min(cells.len())).unwrap_or_default();
+        let values = cells.get(1..channels.min(cells.len())).unwrap_or(&[]);
         table.push_str(&format!("{},{}\n", start + index * increment, values.join(",")));
     }
     Some(table)

@@ -103,8 +103,7 @@ fn quoted(text: &str) -> String {
 /// # Errors
 /// A clause about columns of different lengths, or that there are none.
 pub(super) fn named(columns: &[Column<'_>], remarks: &[(String, String)]) -> Result<String, String> {
-    // Without columns there are no samples.
-    let length = columns.iter().map(|column| column.length).max().unwrap_or(0);
+    let length = columns.iter().map(|column| column.length).fold(0, usize::max);
     if length == 0 {
         return Err("it holds no samples".to_owned());
     }

@@ -3,6 +3,8 @@
 //! Source: Microsoft and IBM, *Multimedia Programming Interface and Data Specifications 1.0*, with
 //! Microsoft's `WAVEFORMATEXTENSIBLE`; EBU Tech 3306 for RF64.
 
+#![allow(clippy::indexing_slicing, reason = "the head of the chunk was read")]
+
 use super::bytes::{length_at, number_at};
 use super::sheet::{Cell, Sheet};
 use super::unread::Unread;
@@ -63,7 +65,7 @@ fn chunks(bytes: &[u8]) -> Result<(Format, &[u8]), String> {
     let unfinished = length_at(bytes, 4, 4).is_none_or(|size| size < bytes.len() - 8);
     while let (Some(name), Some(size)) = (bytes.get(at..at + 4), length_at(bytes, at + 4, 4)) {
         // A recorder that was cut off has not yet written its size, or has fewer bytes than it announced.
-        let rest = bytes.get(at + 8..).unwrap_or_default();
+        let rest = &bytes[at + 8..];
         let unknown = name == b"data" && (size == 0xffff_ffff || size == 0 && unfinished);
         let body = rest.get(..size).filter(|_| !unknown).unwrap_or(rest);
         match (name, format.take()) {

@@ -157,6 +157,7 @@ fn the_task_chooses_the_page() {
     let texts = RunTexts { result: &run, ..texts };
     assert_eq!(render(&texts).unwrap(), render_run(&texts).unwrap());
     assert!(render_comparison(&texts).unwrap_err().to_string().contains("reads \"compare\""));
-    assert!(comparison_markdown(&run).is_err() && comparison_markdown("").is_err());
+    assert!(comparison_markdown(&run).unwrap_err().to_string().contains("reads \"compare\""));
+    assert!(comparison_markdown("").unwrap_err().to_string().contains("is missing or empty"));
     assert!(comparison_markdown(&comparison).unwrap().starts_with("# One damping ratio by 21 methods\n"));
 }

@@ -58,8 +58,8 @@ enum Scale {
 /// sampling rate.
 fn spectrum(cells: &[MapCell]) -> &[MapCell] {
     // Without a significant cell, the first cells represent the rest.
-    let last = cells.iter().rposition(|cell| cell.significant).unwrap_or(0);
-    cells.get(..(last + 1 + BEYOND).min(cells.len())).unwrap_or(cells)
+    let last = cells.iter().rposition(|cell| cell.significant).map_or(1, |last| last + 1);
+    cells.split_at((last + BEYOND).min(cells.len())).0
 }
 
 /// Returns the cells along one axis as steps, interrupted where cells are apart or empty.

@@ -125,8 +125,7 @@ impl Ticks {
     /// Returns the number of characters of the longest label.
     pub(crate) fn longest_label(&self) -> usize {
         let places = self.ends.0.ceil() as i64..=self.ends.1.floor() as i64;
-        // An axis without ticks has no labels.
-        places.map(|place| self.label(place as f64).chars().count()).max().unwrap_or(0)
+        places.map(|place| self.label(place as f64).chars().count()).fold(0, usize::max)
     }
 
     /// Returns the label of the tick at a position.

@@ -138,7 +138,6 @@ impl Table {
 fn encoded(column: &[f64], rising: bool) -> Value {
     let finite = || column.iter().copied().filter(|value| value.is_finite());
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    // A column without numbers has no starting value: all its steps are `null`.
     let from = finite().next().unwrap_or(0.0);
     // A power of ten, so that a round number stays round.
     let step = if high > low { 10f64.powf(((high - low) / STEPS).log10().floor()) } else { 1.0 };
@@ -151,8 +150,7 @@ fn encoded(column: &[f64], rising: bool) -> Value {
                 if let (true, Some(last)) = (rising, last) {
                     at = at.max(last + 1);
                 }
-                // The first step is counted from the column's starting value.
-                let delta = at - last.unwrap_or(0);
+                let delta = last.map_or(at, |last| at - last);
                 last = Some(at);
                 delta
             })

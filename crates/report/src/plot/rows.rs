@@ -175,8 +175,7 @@ impl Form {
     /// Returns the margins. Right of the axis, and left of it on a narrow page, there is room for half of a
     /// tick's label.
     fn margins(&self, rows: &[DotRow]) -> Margins {
-        // Without rows, no name needs room.
-        let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
+        let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).fold(0, usize::max);
         let names = letters as f64 * NAME_LETTER * self.canvas.tick_size;
         let left = if self.above { 24.0 } else { names + GAP + 4.0 };
         // Half of the last number extends beyond the end of the axis.

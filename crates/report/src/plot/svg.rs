@@ -145,8 +145,8 @@ impl<'a> Sheet<'a> {
 
         let size = self.canvas.tick_size;
         let said: Vec<String> = x_places.iter().map(|place| self.x.label(*place)).collect();
-        // Without ticks, no label needs room.
-        let widest = said.iter().map(|words| words.chars().count()).max().unwrap_or(0) as f64 * LETTER * size;
+        let widest =
+            said.iter().map(|words| words.chars().count()).fold(0, usize::max) as f64 * LETTER * size;
         let spacing = (self.x(1.0) - self.x(0.0)).max(1.0);
         let every = ((widest + 2.0 * ROOM) / spacing).ceil().max(1.0) as usize;
         for (place, words) in x_places.iter().zip(&said).step_by(every) {

@@ -150,5 +150,6 @@ fn the_task_chooses_the_page() {
     assert_eq!(render(&texts).unwrap(), render_prediction(&texts).unwrap());
     assert!(comparison_markdown(&result).unwrap_err().to_string().contains("reads \"compare\""));
     let other = crate::sample::Sample::new().json();
-    assert!(render_prediction(&RunTexts { result: &other, ..texts }).is_err());
+    let refused = render_prediction(&RunTexts { result: &other, ..texts }).unwrap_err().to_string();
+    assert!(refused.contains("reads \"predict\""), "{refused}");
 }

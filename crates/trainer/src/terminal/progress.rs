@@ -105,7 +105,6 @@ impl Progress {
 
     /// Returns the number of finished items and the total number.
     fn place(&self) -> (u64, u64) {
-        // A bar without a length has nothing to count to.
         (self.bar.position(), self.bar.length().unwrap_or(0))
     }
 

@@ -72,7 +72,6 @@ fn broken(line: &str, width: usize) -> String {
 /// there is enough room behind it, else that of the line itself.
 fn indent(line: &str, width: usize) -> usize {
     let letters: Vec<char> = line.chars().take(width).collect();
-    // An empty line has no indentation.
     let own = letters.iter().position(|letter| *letter != ' ').unwrap_or(0);
     let cell = letters.windows(3).rposition(|of| matches!(of, [' ', ' ', next] if *next != ' '));
     match cell.map(|at| at + 2).filter(|at| *at > own && 3 * at <= 2 * width) {

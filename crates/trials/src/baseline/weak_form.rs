@@ -9,6 +9,8 @@
 //! # Reference
 //! D. A. Messenger, D. M. Bortz, Multiscale Model. Simul. 19 (2021) 1474–1497.
 
+#![allow(clippy::indexing_slicing, reason = "`weak_form` refuses records whose lists differ in length")]
+
 use super::BaselineRecord;
 use dynamics::Nominal;
 use dynamics::weak_form::test_function;
@@ -162,21 +164,16 @@ impl<'a> Motion<'a> {
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);
         let to = times.partition_point(|time| *time <= center + half);
-        // All lists are as long as the times, because `weak_form` refuses other records: nothing is missing.
-        let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or_default();
         let rest = nominal.rest_angle();
         for index in from..to {
-            let time = at(times, index);
-            let next = at(times, (index + 1).min(times.len() - 1));
-            let before = at(times, index.saturating_sub(1));
-            let width = 0.5 * (next - before);
+            let time = times[index];
+            let width = 0.5 * (times[(index + 1).min(times.len() - 1)] - times[index.saturating_sub(1)]);
             let [bump, slope, curvature] = test_function((time - center) / half, EXPONENT);
             let weights = [bump, slope / half, curvature / (half * half)];
             let [bump, slope, curvature] = weights.map(|value| value * width);
-            let position = at(&self.record.values, index) - rest;
-            let velocity = at(&self.velocity, index);
-            // Nothing drives a record without an input.
-            let input = self.record.input.as_ref().map_or(0.0, |input| at(input, index));
+            let position = self.record.values[index] - rest;
+            let velocity = self.velocity[index];
+            let input = self.record.input.as_ref().map_or(0.0, |input| input[index]);
             // Mean of a sign over the time that belongs to the sample, in case the sign changes within it.
             let mean_sign = |value: f64, rate: f64| {
                 let change = 0.5 * rate.abs() * width;
@@ -197,7 +194,7 @@ impl<'a> Motion<'a> {
                 (position / self.amplitude).powi(2),
                 (position + rest).sin(),
                 side,
-                at(&self.bristle, index),
+                self.bristle[index],
                 time * position,
                 time * velocity,
             ];

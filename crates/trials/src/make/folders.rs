@@ -26,10 +26,9 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(paths)
 }
 
-/// Returns the last component of a path.
+/// Returns the last component of a path; empty for a path that ends in `..`.
 pub(crate) fn file_name(path: &Path) -> String {
-    // Only a path that ends in `..` has no file name, and no entry of a folder does.
-    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// Returns `true` if a file is named `PREFIX*.csv`.

@@ -115,7 +115,6 @@ impl Nuisances {
     /// Returns the standard deviation of all white disturbances of the values: the sensor's noise, its
     /// rounding, and the effect of scattered timestamps.
     pub(crate) fn white(&self, situation: &Situation, square_velocity: f64) -> f64 {
-        // A sensor without steps rounds nothing.
         let rounding = self.encoder_step.map_or(0.0, |step| step * step / 12.0);
         let jitter = self.jitter_deviation(situation, square_velocity).powi(2) * square_velocity;
         (situation.noise.powi(2) + rounding + jitter).sqrt()

@@ -6,6 +6,8 @@
 //! is fitted to the noise-free samples with the effect (Gauss–Newton with exact sensitivities), and the root
 //! of the residual's sum of squares is divided by σ.
 
+#![allow(clippy::indexing_slicing, reason = "a step has an entry for every fitted quantity")]
+
 use super::error::TrialError;
 use super::situation::Situation;
 use dynamics::chain::Samples;
@@ -131,10 +133,9 @@ impl<'a> Recalibration<'a> {
     /// Returns the phase change at the end of a record that a step causes through stiffness and inertia.
     fn phase_moved(&self, round: &Round) -> f64 {
         let nominal = &self.situation.nominal;
-        let at = |place: usize| round.step.get(place).copied();
-        // A quantity that is not fitted does not change.
-        let moved = |place: Option<usize>| place.and_then(at).unwrap_or_default();
-        let relative = moved(Some(STIFFNESS)) / nominal.stiffness() - moved(self.inertia) / nominal.inertia();
+        let stiffness = round.step[STIFFNESS] / nominal.stiffness();
+        let relative =
+            self.inertia.map_or(stiffness, |place| stiffness - round.step[place] / nominal.inertia());
         0.5 * relative.abs() * self.situation.omega() * self.situation.duration()
     }
 
@@ -180,7 +181,6 @@ impl<'a> Recalibration<'a> {
         let unknowns = self.unknowns.clone();
         let (coefficients, rest) = unknowns.split_at(self.coefficients);
         let (drift, starts) = rest.split_at(usize::from(self.drift));
-        // A sensor whose drift is not fitted does not drift.
         let slope = drift.first().copied().unwrap_or_default();
         self.model.set(coefficients)?;
         let mut row: Vec<(usize, f64)> = Vec::with_capacity(count);

@@ -163,7 +163,6 @@ impl Situation {
 
     /// Returns the amplitude of the input; 0 without an input.
     pub(crate) fn largest_input(&self) -> f64 {
-        // A missing input acts like one of amplitude 0.
         self.excitation.map_or(0.0, |excitation| excitation.amplitude)
     }
 

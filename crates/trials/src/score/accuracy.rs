@@ -1,5 +1,7 @@
 //! Accuracy by bank, effect and size, and confusion tables.
 
+#![allow(clippy::indexing_slicing, reason = "sizes are counted by their own list")]
+
 use super::judgment::{BANKS, Judgment, KINDS, Said};
 use super::statistics::proportion;
 use crate::hidden::{Asked, Bank};
@@ -11,13 +13,10 @@ pub(crate) const SIZES: [f64; 9] = [3.0, 6.0, 12.0, 25.0, 50.0, 100.0, 200.0, 40
 
 /// Returns the range of sizes that the size with an index represents.
 pub(crate) fn range(index: usize) -> [f64; 2] {
-    let at = |index: usize| SIZES.get(index).copied();
-    let middle = |one: Option<f64>, other: Option<f64>| Some((one? * other?).sqrt());
-    [
-        // The first range includes all smaller sizes.
-        index.checked_sub(1).and_then(|below| middle(at(below), at(index))).unwrap_or(0.0),
-        middle(at(index), at(index + 1)).unwrap_or(f64::INFINITY),
-    ]
+    // The first range includes all smaller sizes, the last one all larger ones.
+    let middle = |below: usize| (SIZES[below] * SIZES[below + 1]).sqrt();
+    let low = if index == 0 { 0.0 } else { middle(index - 1) };
+    [low, if index + 1 < SIZES.len() { middle(index) } else { f64::INFINITY }]
 }
 
 /// Returns `true` if a size lies in a range.
@@ -59,8 +58,7 @@ pub(crate) fn sizes(judged: &[Judgment<'_>], by_effect: bool) -> Vec<SizeRow> {
         let effect = match (by_effect, hidden.effects.first()) {
             (false, _) => "",
             (true, Some(first)) => first.id.as_str(),
-            // If nothing acts, the group has an empty name.
-            (true, None) => foreign.unwrap_or_default(),
+            (true, None) => foreign.unwrap_or(""),
         };
         groups.entry((judgment.bank(), effect, index)).or_default().push(judgment);
     }

@@ -102,7 +102,6 @@ pub(crate) fn leading_sure<'a>(judged: &[&'a Judgment<'a>]) -> Proportion {
 }
 
 fn stated(judgment: &Judgment<'_>, class: &str) -> f64 {
-    // A case without an answer states no probability.
     judgment.answer().map_or(0.0, |answer| probability(answer, class, &judgment.case.hidden.nuisances))
 }
 
@@ -159,8 +158,7 @@ fn inclusion(id: &str, judged: &[&Judgment<'_>], is_class: bool) -> Option<Inclu
     let acts = |judgment: &Judgment<'_>| judgment.case.hidden.effects.iter().any(|effect| key(&effect.id));
     let is_named = |judgment: &Judgment<'_>| named(judgment).iter().any(|own| key(own));
     let stated = |judgment: &Judgment<'_>| {
-        // As for a class: without an answer no probability is stated.
-        if is_class { stated(judgment, id) } else { judgment.probability(id).unwrap_or_default() }
+        if is_class { stated(judgment, id) } else { judgment.probability(id).unwrap_or(0.0) }
     };
     let counted: Vec<&Judgment<'_>> =
         judged.iter().copied().filter(|judgment| acts(judgment) || !is_open(judgment, class)).collect();

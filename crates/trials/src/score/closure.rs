@@ -1,5 +1,7 @@
 //! True closure: share of the gap to the noise-free motion that an answer's simulator removes.
 
+#![allow(clippy::indexing_slicing, reason = "position and velocity come first in every state")]
+
 use super::judgment::Judgment;
 use super::statistics::proportion;
 use crate::hidden::{Bank, Hidden};
@@ -184,10 +186,9 @@ impl Clean {
     /// of the noise-free motion.
     fn fitted(&self, model: &mut Model, segment: &Segment, hidden: usize) -> Result<f64, DynamicsError> {
         let first = segment.times.get(..1).unwrap_or(&segment.times);
-        // A system without hidden states has none to relax.
-        let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden.unwrap_or_default();
+        let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden;
         let mut at = vec![segment.start.position, segment.start.velocity];
-        at.extend(relaxed.into_iter().take(hidden));
+        at.extend(relaxed.iter().flatten().take(hidden));
         let (mut residual, mut jacobian) = self.residual(model, segment, &at)?;
         let mut squares = residual.norm_squared();
         let mut damping = 1e-4;
@@ -227,14 +228,12 @@ impl Clean {
         at: &[f64],
     ) -> Result<(DVector<f64>, DMatrix<f64>), DynamicsError> {
         debug_assert!(at.len() >= 2);
-        // Position and velocity come first, in the order set by `fitted`.
-        let value = |index: usize| at.get(index).copied().unwrap_or_default();
         let mut states = [0.0; SYSTEM_HIDDEN];
         for (slot, value) in states.iter_mut().zip(at.iter().skip(2)) {
             *slot = *value;
         }
         let hidden = (at.len() > 2).then_some(states);
-        let start = FullState { position: value(0), velocity: value(1), hidden };
+        let start = FullState { position: at[0], velocity: at[1], hidden };
         let response = model.run(start, self.input.as_ref(), &segment.times)?;
         let (values, derivatives) = seen(&response, self.observed);
         let rows = segment.values.len();

@@ -175,7 +175,6 @@ impl<'a> Judgment<'a> {
     /// answer.
     pub(crate) fn probability(&self, id: &str) -> Option<f64> {
         let answer = self.answer()?;
-        // Lists omit what is hardly possible.
         Some(answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability))
     }
 

@@ -193,8 +193,7 @@ fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
     TrialCaseRow {
         id: judgment.case.id.clone(),
         bank: judgment.bank().name().to_owned(),
-        // If nothing acts, the cell is empty.
-        hidden: if ids.is_empty() { judgment.foreign_law().unwrap_or_default() } else { ids.join("+") },
+        hidden: judgment.foreign_law().filter(|_| ids.is_empty()).unwrap_or_else(|| ids.join("+")),
         size: sizes.join("+"),
         status: judgment.said.name().to_owned(),
         named: judgment.named.join("+"),

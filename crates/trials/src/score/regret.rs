@@ -76,13 +76,14 @@ mod tests {
     #[test]
     fn without_an_effect_of_a_simulator_there_is_no_reference() {
         let nominal = (&Nominal::new(1.0, 0.1, 40.0, 0.0).unwrap()).into();
-        for mut own in [
-            case(Bank::None, &[], answered("none", &[], 0.9)),
-            case(Bank::Foreign, &[], answered("unknown", &[], 0.9)),
-            case(Bank::Single, &["outliers"], answered("effect", &[], 0.9)),
+        let not_held = "no hidden effect can be part of a simulator";
+        for (mut own, expected) in [
+            (case(Bank::None, &[], answered("none", &[], 0.9)), not_held),
+            (case(Bank::Foreign, &[], answered("unknown", &[], 0.9)), "what is missing has no name"),
+            (case(Bank::Single, &["outliers"], answered("effect", &[], 0.9)), not_held),
         ] {
             with_parameters(&mut own.hidden.effects);
-            assert!(with_the_truth(&own.hidden, &nominal).is_err());
+            assert_eq!(with_the_truth(&own.hidden, &nominal).unwrap_err(), expected);
         }
     }
 }

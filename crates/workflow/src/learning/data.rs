@@ -1,5 +1,7 @@
 //! Data sets made of records.
 
+#![allow(clippy::indexing_slicing, reason = "the closure runs only if there are times")]
+
 use experiment::LearningProblem;
 use learn::LearnError;
 use learn::data::Trajectory;
@@ -47,9 +49,7 @@ pub fn trajectory(
         values.iter().map(|value| if problem.remove_mean { value - mean } else { *value }).collect()
     };
     let thin = |values: &[f64]| values.iter().step_by(problem.every).copied().collect::<Vec<f64>>();
-    // Without samples there is no start time.
-    let first = times_s.first().copied().unwrap_or_default();
-    let times = thin(times_s).iter().map(|time| time - first).collect();
+    let times = thin(times_s).iter().map(|time| time - times_s[0]).collect();
     let input = record.input().map(|input| thin(&centered(input)));
     Trajectory::new(name, times, thin(&centered(record.values())), input)
 }

@@ -3,7 +3,6 @@
 use super::method::Method;
 use super::{Ready, Tried};
 use learn::LearnError;
-use learn::data::Trajectory;
 use learn::judge::{Score, Truth, runs, runs_on_noise, score_of_runs};
 use learn::learners::find;
 use record::Origin;
@@ -131,8 +130,8 @@ fn coefficients(
     model: &dyn learn::Model,
     truth: Option<&Truth>,
 ) -> Option<BTreeMap<String, LearnCoefficient>> {
-    // Without a truth there are no errors.
-    let errors = truth.and_then(|truth| truth.coefficient_errors(model)).unwrap_or_default();
+    let errors: Vec<_> =
+        truth.and_then(|truth| truth.coefficient_errors(model)).into_iter().flatten().collect();
     let true_value = |name: &str| errors.iter().find(|error| error.name == name).map(|error| error.truth);
     let mut all: BTreeMap<String, LearnCoefficient> = model
         .coefficients()
@@ -196,8 +195,9 @@ pub fn described(id: &str, title: &str, origin: Origin, ready: Result<&Ready, &S
             test: data.test.len(),
         };
         described.training_samples = data.training_samples();
-        // Data without a training part were refused before.
-        described.rate_hz = data.train.first().map_or(0.0, Trajectory::rate_hz);
+        if let Some(first) = data.train.first() {
+            described.rate_hz = first.rate_hz();
+        }
         described.period_s = data.period_s;
         described.warm_up_s = data.warm_up_s;
         described.noise = data.noise;

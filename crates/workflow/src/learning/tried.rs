@@ -5,7 +5,7 @@ use super::method::{Judged, Method, attempt};
 use estimator::Cancel;
 use learn::{Context, LearnError, Step};
 use seed::Seed;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Result of a method on a data set.
@@ -39,6 +39,5 @@ pub fn tried(
     let fitted =
         attempt(ready, method, &Context { seed, max_steps, cancel, observe: &observe, checkpoints: None });
     let seconds = start.elapsed().as_secs_f64();
-    // If a panic poisoned the lock, no steps are reported.
-    Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
+    Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_else(PoisonError::into_inner) }
 }

@@ -1,7 +1,7 @@
 //! Whole model of a robot against recordings, with what was found in its joints.
 
 use super::joint::JointAnswer;
-use super::read::{LoadedRecording, RobotQuestion};
+use super::read::{LoadedRecording, RobotQuestion, place};
 use crate::error::WorkflowError;
 use diagnosis::Settings;
 use dynamics::tree::Acting;
@@ -50,20 +50,16 @@ impl RobotQuestion {
             }
         }
         let longest = spans.into_iter().fold(0.0, f64::max);
-        let mut last = None;
+        let (mut recordings, mut held) = (Vec::new(), longest);
         for span in SPANS_S.into_iter().filter(|span| *span < longest || *span == SPANS_S[3]) {
-            let rows = self.runs(&check, span, &floors)?;
-            let is_followed = rows.iter().zip(&check.recordings).all(|(row, own)| is_followed(row, own));
-            last = Some((rows, span));
-            if is_followed {
+            (recordings, held) = (self.runs(&check, span, &floors)?, span);
+            if recordings.iter().zip(&check.recordings).all(|(row, own)| is_followed(row, own)) {
                 break;
             }
         }
-        // The shortest span is always tried.
-        let (recordings, span) = last.unwrap_or_default();
         Ok(ClosedLoopRow {
             recordings,
-            span_s: span.min(longest),
+            span_s: held.min(longest),
             is_held_out: true,
             held_out: check.held_out,
         })
@@ -146,9 +142,8 @@ impl RobotQuestion {
         let ids = REGISTRY.iter().map(|effect| effect.id().to_owned());
         let without = ids.filter(|id| !named.contains(id)).collect();
         let settings = Settings { without, ..settings.clone() };
-        let joint = self.model.joints().iter().position(|joint| joint.name == own.joint.name);
-        // An answer is that of a joint of the model.
-        self.joint(joint.unwrap_or(0), recordings, share)?.answer(&settings, seed, &|_| true)
+        let joint = place(self.model.joints(), &own.joint.name)?;
+        self.joint(joint, recordings, share)?.answer(&settings, seed, &|_| true)
     }
 
     /// Returns what acts in every joint: as given, recalibrated, repaired. A joint without an answer stays as given.
@@ -177,7 +172,6 @@ impl RobotQuestion {
     fn floors(&self, answers: &[JointAnswer]) -> Vec<f64> {
         let of = |joint: &robot::JointInfo| {
             let answer = answers.iter().find(|own| own.joint.name == joint.name);
-            // Its errors are then compared with nothing.
             answer.map_or(0.0, |own| own.answer.result.gap.noise_floor)
         };
         self.model.joints().iter().map(of).collect()
@@ -224,7 +218,7 @@ fn row(
     ClosedLoopRecording {
         path: own.along.recording().name.clone(),
         // Variants have as many runs each, unless their motion leaves every bound.
-        runs: found.iter().map(|own| own.runs).max().unwrap_or(0),
+        runs: found.iter().map(|own| own.runs).fold(0, usize::max),
         starts: starts.collect(),
         joints: joints.collect(),
     }

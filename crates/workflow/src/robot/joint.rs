@@ -256,7 +256,6 @@ fn beyond(
 
 /// Returns what acts in a joint by its fitted coefficients; one that is not determined is 0.
 fn acting(joint: &JointInfo, repair: &JointRepairRow, effects: Vec<Active>) -> Acting {
-    // The model keeps its own value.
     let value = |own: Option<WithInterval>| own.map_or(0.0, |own| own.value);
     Acting {
         // A file that holds an armature holds none below 0.

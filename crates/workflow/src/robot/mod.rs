@@ -30,6 +30,12 @@ pub struct RobotAnswer {
 }
 
 impl RobotQuestion {
+    /// Returns the name of a joint of the model by its index.
+    fn name_of(&self, joint: usize) -> String {
+        let own = self.model.joints().get(joint);
+        own.map_or_else(|| format!("joint {}", joint + 1), |own| own.name.clone())
+    }
+
     /// Diagnoses every joint in parallel and checks the whole model. A joint that fails is among
     /// [`JointsResult::failed`], and the others continue. `goes_on` is asked after each stage of a joint, and `done` hears of each
     /// joint.
@@ -50,11 +56,8 @@ impl RobotQuestion {
                 let answer = own.answer(settings, seed, goes_on)?;
                 Ok((own, answer))
             });
-            let fate = answer.map_err(|error| {
-                // The index is that of a joint of the model.
-                let id = self.model.joints().get(*joint).map(|own| own.name.clone()).unwrap_or_default();
-                FailedCase { id, message: error.to_string() }
-            });
+            let fate =
+                answer.map_err(|error| FailedCase { id: self.name_of(*joint), message: error.to_string() });
             done(&fate);
             fate
         };

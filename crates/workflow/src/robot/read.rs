@@ -6,6 +6,7 @@ use crate::read::{Loaded, Reading};
 use record::{Fault, Filter, Unit, extremes};
 use robot::columns::{JointColumns, Stated, find, find_long};
 use robot::{Along, Channel, JointInfo, Model, Recording, RobotError, Urdf};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -97,17 +98,19 @@ impl RobotQuestion {
     }
 }
 
+/// Returns the index of a joint by its name.
+pub(super) fn place(joints: &[JointInfo], name: &str) -> Result<usize, RobotError> {
+    joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
+        let known: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+        RobotError::Unknown { name: name.to_owned(), what: "joint of the model", known: known.join(", ") }
+    })
+}
+
 /// Returns the indices of the joints that are asked for.
 fn asked(joints: &[JointInfo], names: &[String]) -> Result<Vec<usize>, WorkflowError> {
-    let place = |name: &String| {
-        joints.iter().position(|joint| joint.name == *name).ok_or_else(|| {
-            let known: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
-            RobotError::Unknown { name: name.clone(), what: "joint of the model", known: known.join(", ") }
-        })
-    };
     let mut asked: Vec<usize> = match names {
         [] => (0..joints.len()).collect(),
-        names => names.iter().map(place).collect::<Result<_, _>>()?,
+        names => names.iter().map(|name| place(joints, name)).collect::<Result<_, _>>()?,
     };
     asked.sort_unstable();
     asked.dedup();
@@ -129,20 +132,19 @@ fn check_usable(
             log: recording.name.clone(),
             quantity: "torque",
             joint: joint.name.clone(),
-            // A recording has at least one joint.
-            columns: loaded.first().map(|own| own.columns.clone()).unwrap_or_default(),
+            columns: loaded.first().map_or_else(String::new, |own| own.columns.clone()),
             option: format!("{}=POSITION,TORQUE", joint.name),
         }),
     }
 }
 
 fn check_distinct(recordings: &[LoadedRecording]) -> Result<(), WorkflowError> {
-    let digest = |own: &LoadedRecording| own.joints.first().map(|joint| joint.source.digest.clone());
-    for (at, one) in recordings.iter().enumerate() {
-        if let Some(other) = recordings.iter().skip(at + 1).find(|other| digest(other) == digest(one)) {
-            let [first, second] = [one, other].map(|own| own.along.recording().name.clone());
-            // Recordings have at least one joint.
-            return Err(WorkflowError::SameRecord { first, second, digest: digest(one).unwrap_or_default() });
+    let mut known: BTreeMap<&str, &LoadedRecording> = BTreeMap::new();
+    for own in recordings {
+        let Some(joint) = own.joints.first() else { continue };
+        if let Some(earlier) = known.insert(&joint.source.digest, own) {
+            let [first, second] = [earlier, own].map(|own| own.along.recording().name.clone());
+            return Err(WorkflowError::SameRecord { first, second, digest: joint.source.digest.clone() });
         }
     }
     Ok(())

@@ -17,8 +17,7 @@ impl RobotQuestion {
                 .iter()
                 .map(|own| coefficients(self.model.joints(), &own.along, *joint).ok())
                 .collect();
-            // The index is that of a joint of the model.
-            let name = self.model.joints().get(*joint).map(|own| own.name.clone()).unwrap_or_default();
+            let name = self.name_of(*joint);
             for (at, (own, differ)) in found.iter().zip(&mut differ).enumerate() {
                 for (which, own) in own.iter().flatten().enumerate() {
                     let others = found.iter().enumerate().filter(|(other, _)| *other != at);

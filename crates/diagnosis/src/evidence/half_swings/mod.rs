@@ -9,6 +9,8 @@
 //! Half swings give evidence for losses only. Durations and centers of the swings also tell of the restoring torque,
 //! but in training banks that added nothing to the evidence from fits.
 
+#![allow(clippy::indexing_slicing, reason = "there is a coefficient for every term")]
+
 mod averaging;
 mod regression;
 #[cfg(test)]
@@ -144,8 +146,7 @@ fn of_durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Vec<In
     let (most, span) = (largest(swings), span(swings));
     let least = swings.iter().map(|swing| swing.amplitude).fold(most, f64::min);
     let power = |term: usize, swing: &HalfSwing| {
-        // There is a power for every term.
-        let power = POWERS.get(term).copied().unwrap_or_default();
+        let power = POWERS[term];
         let part = (swing.amplitude / if power < 0 { least } else { most }).powi(power);
         if PRESLIDING.contains(&term) { -part } else { part }
     };
@@ -183,10 +184,7 @@ fn of_terms(typical: f64) -> Vec<Prior> {
 
 /// Returns the restoring torque implied by the durations, with its drift up to the time of a swing.
 fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfSwing) -> Restoring {
-    let of = |term: usize| {
-        // Without a fit of the durations they depend on nothing.
-        durations.and_then(|found| found.coefficients.get(term)).copied().unwrap_or(0.0)
-    };
+    let of = |term: usize| durations.map_or(0.0, |found| found.coefficients[term]);
     let base = of(CONSTANT).max(f64::MIN_POSITIVE);
     let most = largest(swings);
     let least = swings.iter().map(|swing| swing.amplitude).fold(most, f64::min);

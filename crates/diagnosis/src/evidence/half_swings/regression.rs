@@ -6,6 +6,11 @@
 //! The ratio of the two variances is unknown: the evidence is averaged over a grid of ratios, and the common
 //! scale is integrated out.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "every increment has its variance and covariances, every term its column"
+)]
+
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::function::gamma::ln_gamma;
@@ -103,13 +108,9 @@ fn whiten(runs: &[Increments], terms: usize, ratio: f64, scale: f64) -> Option<W
         let values = factor.solve(&run.values);
         let columns: Vec<Vec<f64>> = run.terms.iter().map(|term| factor.solve(term)).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        whitened.normal += DMatrix::from_fn(terms, terms, |row, column| {
-            // There are as many columns as terms.
-            columns.get(row).zip(columns.get(column)).map_or(0.0, |(a, b)| dot(a, b))
-        });
-        whitened.right +=
-            // There are as many columns as terms.
-            DVector::from_fn(terms, |row, _| columns.get(row).map_or(0.0, |term| dot(term, &values)));
+        debug_assert_eq!(columns.len(), terms);
+        whitened.normal += DMatrix::from_fn(terms, terms, |row, column| dot(&columns[row], &columns[column]));
+        whitened.right += DVector::from_fn(terms, |row, _| dot(&columns[row], &values));
         whitened.squares += dot(&values, &values);
         whitened.log_determinant += factor.log_determinant();
         whitened.count += run.values.len();
@@ -129,16 +130,10 @@ impl Banded {
         let [variances, first, second] = covariance;
         let mut factor = Self { diagonal: Vec::new(), next: Vec::new(), second: Vec::new() };
         for (row, variance) in variances.iter().enumerate() {
-            let back = |list: &[f64], by: usize| {
-                // Entries before the first row do not count.
-                row.checked_sub(by).and_then(|at| list.get(at)).copied().unwrap_or(0.0)
-            };
             // Entries of this row: two before, one before, and the diagonal.
-            let far = if row >= 2 { back(second, 2) / back(&factor.diagonal, 2) } else { 0.0 };
+            let far = if row >= 2 { second[row - 2] / factor.diagonal[row - 2] } else { 0.0 };
             let near = if row >= 1 {
-                // The band has an entry for the row before.
-                (back(first, 1) - far * factor.next.last().copied().unwrap_or(0.0))
-                    / back(&factor.diagonal, 1)
+                (first[row - 1] - far * factor.next[row - 1]) / factor.diagonal[row - 1]
             } else {
                 0.0
             };
@@ -156,11 +151,12 @@ impl Banded {
 
     fn solve(&self, values: &[f64]) -> Vec<f64> {
         let mut solved: Vec<f64> = Vec::with_capacity(values.len());
-        let rows = self.diagonal.iter().zip(&self.next).zip(&self.second).zip(values);
-        for (row, (((diagonal, near), far), value)) in rows.enumerate() {
-            // Entries before the first row do not count.
-            let back = |by: usize| row.checked_sub(by).and_then(|at| solved.get(at)).copied().unwrap_or(0.0);
-            let own = (value - near * back(1) - far * back(2)) / diagonal;
+        let (mut second, mut first) = (0.0, 0.0);
+        for (((diagonal, near), far), value) in
+            self.diagonal.iter().zip(&self.next).zip(&self.second).zip(values)
+        {
+            let own = (value - near * first - far * second) / diagonal;
+            (second, first) = (first, own);
             solved.push(own);
         }
         solved
@@ -179,9 +175,7 @@ fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<
     let sum: f64 = fits.iter().map(|(log, ..)| (log - most).exp()).sum();
     let mut coefficients = vec![0.0; acts.len()];
     for (place, estimate) in places.iter().zip(own) {
-        if let Some(slot) = coefficients.get_mut(*place) {
-            *slot = *estimate;
-        }
+        coefficients[*place] = *estimate;
     }
     Some(Hypothesis {
         acts: acts.to_vec(),
@@ -195,25 +189,12 @@ fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<
 fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(f64, Vec<f64>)> {
     let terms = places.len();
     let freedom = whitened.count.checked_sub(terms).filter(|left| *left >= 3)? as f64;
-    let entry = |row: usize, column: usize| {
-        places
-            .get(row)
-            .zip(places.get(column))
-            .and_then(|place| whitened.normal.get((*place.0, *place.1)))
-            .copied()
-    };
-    // Places are indices into the normal matrix.
-    let normal = DMatrix::from_fn(terms, terms, |row, column| entry(row, column).unwrap_or_default());
-    let right = DVector::from_fn(terms, |row, _| {
-        // Places are indices into the normal matrix.
-        places.get(row).and_then(|place| whitened.right.get(*place)).copied().unwrap_or_default()
-    });
+    let normal = DMatrix::from_fn(terms, terms, |row, column| whitened.normal[(places[row], places[column])]);
+    let right = DVector::from_fn(terms, |row, _| whitened.right[places[row]]);
     // The units differ by many orders of magnitude: columns are scaled to length 1 before the factorization.
     let lengths = normal.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let unit = DMatrix::from_fn(terms, terms, |row, column| {
-        let length = |at: usize| lengths.get(at).copied().unwrap_or(1.0);
-        // The indices are within the matrix.
-        normal.get((row, column)).copied().unwrap_or_default() / (length(row) * length(column))
+        normal[(row, column)] / (lengths[row] * lengths[column])
     });
     let factor = unit.cholesky()?;
     let solved = factor.solve(&right.component_div(&lengths));
@@ -233,17 +214,14 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
         - 0.5 * freedom * (PI * squares).ln();
     let mut estimates = Vec::with_capacity(terms);
     for (at, place) in places.iter().enumerate() {
-        let length = lengths.get(at).copied().unwrap_or(1.0);
-        // There are as many solutions as places.
-        let value = solved.get(at).copied().unwrap_or_default() / length;
-        // There are as many solutions as places.
-        let error = (variance * inverse.get((at, at)).copied().unwrap_or_default()).sqrt() / length;
-        log += match priors.get(*place) {
-            Some(Prior::UpTo(most)) => log_between(-value / error, (most - value) / error) - most.ln(),
-            Some(Prior::Within(most)) => {
+        let value = solved[at] / lengths[at];
+        let error = (variance * inverse[(at, at)]).sqrt() / lengths[at];
+        log += match priors[*place] {
+            Prior::Always => 0.0,
+            Prior::UpTo(most) => log_between(-value / error, (most - value) / error) - most.ln(),
+            Prior::Within(most) => {
                 log_between((-most - value) / error, (most - value) / error) - (2.0 * most).ln()
             }
-            _ => 0.0,
         };
         estimates.push(value);
     }
@@ -263,8 +241,7 @@ fn log_between(low: f64, high: f64) -> f64 {
     if near > 6.0 {
         return -0.5 * near * near - (near * (2.0 * PI).sqrt()).ln();
     }
-    // A standard deviation of 1 is valid.
-    let below = |z: f64| Normal::new(0.0, 1.0).map_or(0.5, |normal| normal.cdf(z));
+    let below = |z: f64| Normal::standard().cdf(z);
     let between = if near > 0.0 { below(-near) - below(-far) } else { below(high) - below(low) };
     between.max(f64::MIN_POSITIVE).ln()
 }

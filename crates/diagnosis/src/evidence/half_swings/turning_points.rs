@@ -61,9 +61,8 @@ impl Samples {
 
     fn points(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
         let range = self.between(from, to);
-        // A range of a record without samples is empty.
-        let pick = |list: &[f64]| list.get(range.clone()).unwrap_or_default().to_vec();
-        pick(&self.times).into_iter().zip(pick(&self.values))
+        let samples = self.times.iter().copied().zip(self.values.iter().copied());
+        samples.skip(range.start).take(range.len())
     }
 
     /// Returns the longest time without a sample between two times.
@@ -83,8 +82,7 @@ pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequ
         .filter(|((time, value), kept)| **kept && time.is_finite() && value.is_finite())
         .map(|((time, value), _)| (*time, *value))
         .unzip();
-    // Readings without a stated resolution are not rounded.
-    let samples = Samples { times, values, rounding: record.resolution.unwrap_or(0.0) / 12_f64.sqrt() };
+    let samples = Samples { times, values, rounding: record.step() / 12_f64.sqrt() };
     let Some((start, half)) = first(&samples, angular_frequency) else { return Vec::new() };
     let mut turns: Vec<Option<Local>> = track(&samples, start, half, -1.0);
     turns.reverse();
@@ -98,12 +96,8 @@ pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequ
 fn sinusoid(points: &[(f64, f64)], frequency: f64) -> Option<(f64, [f64; 3])> {
     let count = points.len();
     let middle = points.iter().map(|point| point.1).sum::<f64>() / count as f64;
-    let design = DMatrix::from_fn(count, 3, |row, column| {
-        // There is a row for every point.
-        let phase = frequency * points.get(row).map_or(0.0, |point| point.0);
-        // Three columns, three terms.
-        [1.0, phase.cos(), phase.sin()].get(column).copied().unwrap_or_default()
-    });
+    let row = |point: &(f64, f64)| [1.0, (frequency * point.0).cos(), (frequency * point.0).sin()];
+    let design = DMatrix::from_row_iterator(count, 3, points.iter().flat_map(row));
     let values = DVector::from_iterator(count, points.iter().map(|point| point.1 - middle));
     let solved = design.tr_mul(&design).cholesky()?.solve(&design.tr_mul(&values));
     let rest = (&values - &design * &solved).norm_squared();
@@ -229,18 +223,13 @@ fn fit(samples: &Samples, center: f64, half: f64) -> Option<Local> {
         return None;
     }
     let count = if points.len() >= FEWEST_FULL { 5 } else { 3 };
-    let design = DMatrix::from_fn(points.len(), count, |row, column| {
-        // There is a row for every point.
-        let phase = points.get(row).map_or(0.0, |point| point.0);
-        // There are five terms; the first three may be used alone.
-        terms(phase, 0).get(column).copied().unwrap_or_default()
-    });
+    // The first three terms may be used alone.
+    let row = |phase: f64, derivative: usize| terms(phase, derivative).into_iter().take(count);
+    let rows = points.iter().flat_map(|point| row(point.0, 0));
+    let design = DMatrix::from_row_iterator(points.len(), count, rows);
     let values = DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
     let (solved, inverse, scatter) = robust(&design, &values, samples.rounding)?;
-    let at = |phase: f64, derivative: usize| {
-        // There are five terms; the first three may be used alone.
-        DVector::from_row_slice(terms(phase, derivative).get(..count).unwrap_or_default())
-    };
+    let at = |phase: f64, derivative: usize| DVector::from_iterator(count, row(phase, derivative));
     let mut phase = 0.0_f64;
     for _ in 0..20 {
         let step = at(phase, 1).dot(&solved) / at(phase, 2).dot(&solved);
@@ -277,12 +266,7 @@ fn robust(
     let rounds = if rows >= columns + 3 { 4 } else { 1 };
     let mut found = None;
     for _ in 0..rounds {
-        let weighted = DMatrix::from_fn(rows, columns, |row, column| {
-            // Rows and columns are those of the design.
-            design.get((row, column)).copied().unwrap_or_default()
-                // There is a weight for every row.
-                * weights.get(row).copied().unwrap_or_default()
-        });
+        let weighted = DMatrix::from_fn(rows, columns, |row, column| design[(row, column)] * weights[row]);
         let inverse = weighted.tr_mul(design).cholesky()?.inverse();
         let solved = &inverse * weighted.tr_mul(values);
         let rest = values - design * &solved;

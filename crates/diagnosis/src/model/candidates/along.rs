@@ -1,5 +1,7 @@
 //! Fitted motion, in the form that a candidate reads to compute its first-order change.
 
+#![allow(clippy::indexing_slicing, reason = "all series of a path have an entry for every sample")]
+
 use crate::data::scales::Scales;
 use dynamics::{Coefficients, Input, MOST_HIDDEN, MOST_PARAMETERS, Moment, SystemEffect, Values};
 
@@ -43,15 +45,13 @@ impl Along<'_> {
 
     /// Returns the moment that a law reads at a sample, in its first region.
     pub(crate) fn moment(&self, index: usize) -> Moment<f64> {
-        // Every series has an entry for each sample.
-        let at = |list: &[f64]| list.get(index).copied().unwrap_or(0.0);
-        let velocity = at(self.velocity);
+        let velocity = self.velocity[index];
         Moment {
-            time: at(self.times),
-            position: at(self.position),
+            time: self.times[index],
+            position: self.position[index],
             velocity,
-            input: at(self.input),
-            input_rate: at(self.input_rate),
+            input: self.input[index],
+            input_rate: self.input_rate[index],
             hidden: [0.0; MOST_HIDDEN],
             nominal: *self.nominal,
             direction: if velocity < 0.0 { -1.0 } else { 1.0 },
@@ -92,9 +92,9 @@ pub(crate) struct Mode {
 /// Returns the torque of an input at some times, and its rate; zeros without an input. `gain` is the torque per unit of
 /// the input.
 pub(crate) fn driven(input: Option<&Input>, gain: f64, times: &[f64]) -> [Vec<f64>; 2] {
-    let along = |of: fn(&Input, f64) -> f64| {
-        // Without an input there is no torque.
-        times.iter().map(|time| input.map_or(0.0, |input| gain * of(input, *time))).collect()
+    let along = |of: fn(&Input, f64) -> f64| match input {
+        Some(input) => times.iter().map(|time| gain * of(input, *time)).collect(),
+        None => vec![0.0; times.len()],
     };
     [along(Input::at), along(Input::rate_at)]
 }

@@ -47,8 +47,7 @@ impl CandidateLaw for ClockDrift {
 
     /// A rate that is off by a constant factor is part of the calibration.
     fn stated(&self, active: &Active) -> Option<Vec<f64>> {
-        // A stated law has its parameter.
-        Some(vec![active.value("change").unwrap_or_default()])
+        active.value("change").map(|change| vec![change])
     }
 
     fn columns(&self, _shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {

@@ -39,11 +39,12 @@ impl CandidateLaw for InputDelay {
     /// The column is the response to the difference between the delayed and the present torque.
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         let &[delay] = shape else { return Vec::new() };
-        let shifted = along.times.iter().zip(along.input).map(|(time, now)| {
-            // Without an input nothing is delayed.
-            along.command.map_or(0.0, |input| along.nominal.input_gain * input.at(time - delay) - now)
-        });
-        vec![(along.respond)(&shifted.collect::<Vec<f64>>())]
+        let shift = |input: &dynamics::Input| {
+            let samples = along.times.iter().zip(along.input);
+            samples.map(|(time, now)| along.nominal.input_gain * input.at(time - delay) - now).collect()
+        };
+        let shifted: Vec<f64> = along.command.map_or_else(|| vec![0.0; along.times.len()], shift);
+        vec![(along.respond)(&shifted)]
     }
 
     fn is_its_own_shape(&self) -> bool {

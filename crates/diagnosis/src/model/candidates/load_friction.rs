@@ -52,9 +52,10 @@ impl CandidateLaw for LoadFriction {
 
     /// Without a column of its own the torque without load is 0.
     fn linear_parameters(&self, _shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        let mut sizes = coefficients.iter().rev().copied();
-        // Two columns have two coefficients.
-        let (coefficient, torque) = (sizes.next().unwrap_or(0.0), sizes.next().unwrap_or(0.0));
-        vec![torque, coefficient]
+        match *coefficients {
+            [torque, coefficient] => vec![torque, coefficient],
+            [coefficient] => vec![0.0, coefficient],
+            _ => Vec::new(),
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Laws with a size and an angle, fitted as a Cartesian pair.
 
+#![allow(clippy::indexing_slicing, reason = "indices are those of the law's own parameters")]
+
 /// Indices of a size and an angle among a law's parameters.
 ///
 /// A fit moves the pair (size·cos, size·sin) instead: the law is linear in it, and no angle winds up.
@@ -27,9 +29,7 @@ impl Polar {
     /// unit matrix.
     pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
         let Self { size, angle } = self;
-        // Both indices are those of the law.
-        let at = |place: usize| fitted.get(place).copied().unwrap_or(0.0);
-        let (p, q) = (at(size), at(angle));
+        let (p, q) = (fitted[size], fitted[angle]);
         let length = p.hypot(q);
         if length == 0.0 {
             return vec![(angle, angle, 0.0)];
@@ -46,15 +46,7 @@ impl Polar {
     /// Applies a map to the pair and leaves the other values as they are.
     fn replaced(self, values: &[f64], map: impl Fn(f64, f64) -> (f64, f64)) -> Vec<f64> {
         let mut all = values.to_vec();
-        let pair = (values.get(self.size), values.get(self.angle));
-        if let (Some(&first), Some(&second)) = pair {
-            let (first, second) = map(first, second);
-            for (place, value) in [(self.size, first), (self.angle, second)] {
-                if let Some(slot) = all.get_mut(place) {
-                    *slot = value;
-                }
-            }
-        }
+        (all[self.size], all[self.angle]) = map(values[self.size], values[self.angle]);
         all
     }
 }

@@ -81,9 +81,11 @@ impl CandidateLaw for StribeckFriction {
 
     /// Without a column of its own Coulomb's torque is 0.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        let mut sizes = coefficients.iter().rev().copied();
-        // Two columns have two coefficients.
-        let (excess, torque) = (sizes.next().unwrap_or(0.0), sizes.next().unwrap_or(0.0));
+        let (torque, excess) = match *coefficients {
+            [torque, excess] => (torque, excess),
+            [excess] => (0.0, excess),
+            _ => return Vec::new(),
+        };
         [torque, excess].into_iter().chain(shape.iter().skip(2).copied()).collect()
     }
 }

@@ -145,14 +145,13 @@ impl Bayesian {
     }
 }
 
-/// Returns the pieces that a fit's initial states belong to.
+/// Returns the pieces that a fit's initial states belong to; empty if the fit used other pieces.
 fn pieces_of(data: &DataSet, samples: usize, fit: &Fit) -> Vec<Trajectory> {
     let lengths = [2.0, 8.0, 1e6];
     let cut = |periods: f64| data.training_pieces(periods * data.period_s, samples);
     let matching = |pieces: &Vec<Trajectory>| {
         pieces.len() == fit.starts.len() && pieces.iter().map(Trajectory::len).sum::<usize>() == fit.samples
     };
-    // A fit on other pieces has no likelihood here, and the sampler refuses it.
     lengths.into_iter().map(cut).find(matching).unwrap_or_default()
 }
 

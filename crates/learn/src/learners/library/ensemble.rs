@@ -2,6 +2,8 @@
 //!
 //! Fasel, Kutz, Brunton, Brunton, Proceedings of the Royal Society A 478 (2022) 20210904.
 
+#![allow(clippy::indexing_slicing, reason = "the list grows up to the group")]
+
 use super::{Regression, thresholded};
 use rand::RngExt;
 use seed::Seed;
@@ -10,13 +12,12 @@ use seed::Seed;
 /// replacement.
 #[must_use]
 pub fn inclusion(regression: &Regression, threshold: f64, members: usize, seed: &Seed) -> Vec<f64> {
-    // Without rows there is no group.
-    let last = regression.groups.iter().max().map_or(0, |last| last + 1);
-    let mut by_group: Vec<Vec<usize>> = vec![Vec::new(); last];
+    let mut by_group: Vec<Vec<usize>> = Vec::new();
     for (row, &group) in regression.groups.iter().enumerate() {
-        if let Some(rows) = by_group.get_mut(group) {
-            rows.push(row);
+        if by_group.len() <= group {
+            by_group.resize(group + 1, Vec::new());
         }
+        by_group[group].push(row);
     }
     let mut counts = vec![0_usize; regression.terms.len()];
     let mut generator = seed.child("ensemble").generator();

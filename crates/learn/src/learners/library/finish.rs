@@ -9,7 +9,6 @@ use crate::flow::{
 use crate::judge::validation_error;
 use crate::{Context, Fitted, LearnError, Model, Stored};
 use estimator::Reached;
-use nalgebra::DMatrix;
 
 /// Options for finishing a regression's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,6 +72,11 @@ struct Law {
 }
 
 impl Law {
+    /// Returns the number of steps of its fit; 0 for a law that was not fitted.
+    fn steps(&self) -> u64 {
+        self.fit.as_ref().map_or(0, |fit| fit.steps)
+    }
+
     fn library(&self) -> Library {
         Library::new(self.terms.clone())
     }
@@ -81,9 +85,7 @@ impl Law {
         let covariance = self.fit.as_ref().and_then(Fit::covariance);
         let errors: Option<Vec<f64>> =
             covariance.as_ref().map(|all| all.diagonal().iter().map(|own| own.sqrt()).collect());
-        let drawn = |all: &DMatrix<f64>| Posterior::normal(&self.weights, all, &context.seed);
-        // Without a covariance there are no draws, hence no band.
-        let posterior = covariance.as_ref().map(drawn).unwrap_or_default();
+        let posterior = Posterior::of(&self.weights, covariance.as_ref(), &context.seed);
         let running = Running::new(data, self.fit.as_ref().map_or(data.noise, Fit::rms));
         law(learner, &self.library(), (&self.weights, errors.as_deref()), posterior, running, data)
     }
@@ -150,12 +152,10 @@ fn refitted(
             phase: &phase,
         };
         let Some(mut law) = from.fitted(data, &pieces, context, &shooting)? else { break };
-        // A law that was not fitted took no steps.
-        steps += law.fit.as_ref().map_or(0, |fit| fit.steps);
+        steps += law.steps();
         while let Some(place) = law.superfluous() {
             let Some(shorter) = law.without(place).fitted(data, &pieces, context, &shooting)? else { break };
-            // As above.
-            steps += shorter.fit.as_ref().map_or(0, |fit| fit.steps);
+            steps += shorter.steps();
             law = shorter;
         }
         let error = validation_error(&law.model(learner, data, context), data);

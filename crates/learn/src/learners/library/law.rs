@@ -28,8 +28,7 @@ pub fn law(
     running: Running,
     data: &DataSet,
 ) -> FlowModel {
-    // Without standard errors, no coefficient has one.
-    let errors = errors.unwrap_or_default().iter().copied().map(Some).chain(std::iter::repeat(None));
+    let errors = errors.into_iter().flatten().copied().map(Some).chain(std::iter::repeat(None));
     let coefficients =
         library.terms().iter().zip(weights).zip(errors).map(|((term, value), error)| Coefficient {
             name: term.name().into_owned(),

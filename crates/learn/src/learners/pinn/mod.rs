@@ -128,9 +128,7 @@ impl Learner for Pinn {
         let weights = &search.unknowns.coefficients;
         let spread: Option<Vec<f64>> =
             covariance.as_ref().map(|all| all.diagonal().iter().map(|own| own.sqrt()).collect());
-        let drawn = |all| Posterior::normal(weights, all, &context.seed);
-        // Without a covariance there are no draws, hence no band.
-        let posterior = covariance.as_ref().map(drawn).unwrap_or_default();
+        let posterior = Posterior::of(weights, covariance.as_ref(), &context.seed);
         let model = |posterior, noise| {
             law(ID, &library, (weights, spread.as_deref()), posterior, Running::new(data, noise), data)
         };

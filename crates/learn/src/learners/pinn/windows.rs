@@ -1,6 +1,8 @@
 //! Windows of records, each with a network, and the coefficients that they share: residuals, normal
 //! equations, steps.
 
+#![allow(clippy::indexing_slicing, reason = "pieces have samples")]
+
 use super::trajectory::Shape;
 use crate::Place;
 use crate::data::{DataSet, Scale, Trajectory, interpolated, local_states};
@@ -107,8 +109,7 @@ pub(super) fn stretches(data: &DataSet, jumps: bool, seconds: f64, samples: usiz
 
 impl Window {
     pub(super) fn new(piece: &Trajectory, hold: Hold) -> Self {
-        // A piece has more than three samples.
-        let first = piece.times_s().first().copied().unwrap_or_default();
+        let first = piece.times_s()[0];
         let half_s = (0.5 * piece.duration_s()).max(f64::MIN_POSITIVE);
         let scaled = |time: f64| (time - first) / half_s - 1.0;
         let observed =

@@ -63,14 +63,12 @@ impl Grammar {
             let value: f64 = generator.random_range(-3.0..3.0);
             return Expression::Number((10.0 * value).round() / 10.0);
         }
-        let variables = [Variable::Position, Variable::Velocity, Variable::Input];
-        let count = if self.driven { 3 } else { 2 };
-        Expression::Variable(one_of(
-            // Two or three of the three variables.
-            variables.get(..count).unwrap_or_default(),
-            Variable::Position,
-            generator,
-        ))
+        let variables: &[Variable] = if self.driven {
+            &[Variable::Position, Variable::Velocity, Variable::Input]
+        } else {
+            &[Variable::Position, Variable::Velocity]
+        };
+        Expression::Variable(one_of(variables, Variable::Position, generator))
     }
 
     /// Draws a sum.

@@ -242,11 +242,7 @@ fn model(
         form: json!({ "parts": sum.parts }),
         field: Box::new(sum.clone()),
         weights: weights.to_vec(),
-        // Without a covariance there are no draws, hence no band.
-        posterior: covariance
-            .as_ref()
-            .map(|all| Posterior::normal(weights, all, &context.seed))
-            .unwrap_or_default(), // As said above.
+        posterior: Posterior::of(weights, covariance.as_ref(), &context.seed),
         running,
     }
 }

@@ -1,5 +1,7 @@
 //! Records in weak form, prepared for any expression: ∫φ̈·θ = Σ wₖ·∫φ·gₖ over windows of one period.
 
+#![allow(clippy::indexing_slicing, reason = "the range is found among the states")]
+
 use super::super::weak_sindy::EXPONENT;
 use crate::data::{Trajectory, local_states};
 use crate::expression::Expression;
@@ -36,8 +38,7 @@ impl Weak {
                 let to = states.partition_point(|state| state.time_s <= center + half);
                 let mut sum = 0.0;
                 let mut weights = Vec::new();
-                // Both indices were found among the states.
-                for state in states.get(from..to).unwrap_or_default() {
+                for state in &states[from..to] {
                     let [value, _, curvature] = test_function((state.time_s - center) / half, EXPONENT);
                     let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);
                     let interval = 0.5 * (time(state.sample + 1) - time(state.sample.saturating_sub(1)));

@@ -105,7 +105,10 @@ impl<C: Correction> Field for Corrected<C> {
         let (linear, own) = weights.split_at_checked(self.base.weights()).unwrap_or((weights, &[]));
         let scale = &self.base.scale;
         let z = self.base.scaled(place);
-        let Some((by_linear, by_own)) = slope.weights.split_at_mut_checked(self.base.weights()) else {
+        // Constant, position and velocity are always trained.
+        let (Some((by_linear, by_own)), &[_, weight_x, weight_v, ..]) =
+            (slope.weights.split_at_mut_checked(self.base.weights()), linear)
+        else {
             return self.acceleration(weights, place);
         };
         let (value, [by_x, by_v]) = self.correction.sloped(own, z, by_own);
@@ -115,9 +118,6 @@ impl<C: Correction> Field for Corrected<C> {
             *slot = scale.acceleration * feature;
             sum += weight * feature;
         }
-        debug_assert!(linear.len() >= 3, "constant, position and velocity are always trained");
-        // As asserted above.
-        let [_, weight_x, weight_v] = linear.first_chunk::<3>().copied().unwrap_or_default();
         let [stiffness, damping, ..] = self.base.nominal;
         slope.position = scale.acceleration * (by_x + weight_x) / scale.position - stiffness;
         slope.velocity = scale.acceleration * (by_v + weight_v) / scale.velocity - damping;

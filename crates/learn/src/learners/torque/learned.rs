@@ -37,7 +37,7 @@ pub fn model<C: Kept>(
     FlowModel {
         learner,
         // A model without a form is not stored (`FlowModel::stored`).
-        form: serde_json::to_value(form).unwrap_or_default(),
+        form: serde_json::to_value(form).unwrap_or(serde_json::Value::Null),
         field: Box::new(field.clone()),
         weights: weights.to_vec(),
         posterior,
@@ -98,8 +98,5 @@ pub fn finished<C: Kept>(
 fn laplace(fit: &Fit, penalty: &Penalty, context: &Context<'_>) -> Posterior {
     let precision = DMatrix::from_diagonal(&DVector::from_column_slice(&penalty.precision));
     let covariance = inverse(&(&fit.information / fit.variance() + precision));
-    // Without a covariance there are no draws, hence no band.
-    covariance
-        .map(|covariance| Posterior::normal(&fit.weights, &covariance, &context.seed))
-        .unwrap_or_default() // As said above.
+    Posterior::of(&fit.weights, covariance.as_ref(), &context.seed)
 }

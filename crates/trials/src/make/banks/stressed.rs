@@ -1,6 +1,8 @@
 //! Stressed cases: effects of the vocabulary by other laws, in motions of another integrator, with correlated
 //! disturbances.
 
+#![allow(clippy::indexing_slicing, reason = "there is a torque for each start")]
+
 use super::own_record::{Told, written};
 use crate::effects::by_other_laws;
 use crate::make::case::Case;
@@ -90,8 +92,7 @@ fn disturbance(
         excitation: None,
         ..situation.clone()
     };
-    // There is one torque for each start, and no other record is requested.
-    let held = |record: usize| unit.get(record).cloned().unwrap_or_default();
+    let held = |record: usize| unit[record].clone();
     let shaken = motions(&still, &[], &held)?;
     let squares: Vec<f64> =
         shaken.iter().flat_map(|motion| &motion.position).map(|position| (position - rest).powi(2)).collect();
