@@ -65,7 +65,7 @@ pub enum SettingsError {
         origin: Origin,
         /// Name as written.
         found: String,
-        /// What it names, and what it does not.
+        /// Kind of the named thing, and the kind that was expected.
         is: String,
         /// Advice to the user.
         remedy: String,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Files that make a method part of the project.
 pub(super) struct Skeleton {
-    /// What the method is.
+    /// Kind of the method.
     pub(super) what: &'static str,
     /// Sentence on what the method does.
     pub(super) does: &'static str,
