@@ -211,7 +211,7 @@ fn is_unit(cell: &str) -> bool {
 
 /// Returns the number of cells up to the last nonempty one.
 fn filled(cells: &[&str]) -> usize {
-    cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
+    cells.len() - cells.iter().rev().take_while(|cell| cell.is_empty()).count()
 }
 
 /// Returns the layout of a text whose header is in the last comment above the samples, as in `# time angle`
