@@ -211,7 +211,8 @@ fn is_unit(cell: &str) -> bool {
 
 /// Returns the number of cells up to the last nonempty one.
 fn filled(cells: &[&str]) -> usize {
-    cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
+    let held = cells.iter().zip(1..).filter(|(cell, _)| !cell.is_empty());
+    held.map(|(_, number)| number).fold(0, usize::max)
 }
 
 /// Returns the layout of a text whose header is in the last comment above the samples, as in `# time angle`
