@@ -211,8 +211,10 @@ impl Record {
     /// Returns the number of rows without a value between the first and the last sample.
     #[must_use]
     pub fn empty_rows(&self) -> usize {
-        let ends = self.rows().and_then(|rows| rows.first().zip(rows.last()));
-        ends.map_or(0, |(first, last)| last - first + 1 - self.len())
+        match self.rows() {
+            Some([first, .., last]) => last - first + 1 - self.len(),
+            _ => 0,
+        }
     }
 
     /// Returns the number of each sample: that of its row, or its index if every row holds a sample.

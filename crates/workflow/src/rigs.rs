@@ -181,8 +181,7 @@ fn coefficient(
     parameter: &str,
     values: &[(&str, &ParameterRow)],
 ) -> SharedCoefficientRow {
-    // There is at least one value.
-    let unit = values.first().map(|(_, own)| own.unit.clone()).unwrap_or_default();
+    let unit = values.first().map_or_else(String::new, |(_, own)| own.unit.clone());
     let is_one_unit = values.iter().all(|(_, own)| own.unit == unit);
     let estimates: Vec<(f64, f64)> = values
         .iter()
@@ -210,7 +209,6 @@ fn coefficient(
             .collect(),
         agree,
         chi_squared: found.map(|found| found.chi_squared),
-        // A single value is compared with none.
         degrees: found.map_or(0, |found| found.degrees),
         mean: found.filter(|_| agree == Some(true)).map(mean),
         farthest: found.map(|found| {
