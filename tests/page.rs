@@ -209,6 +209,18 @@ fn the_shipped_record_is_diagnosed_as_by_the_program() {
         assert_eq!(page.browser.visible_faults(view), Vec::<String>::new(), "{view:?}");
     }
     assert_eq!(page.browser.nameless(), Vec::<String>::new());
+    // Regression: a link within the report replaced it by a blocked page, and the frame never shrank again.
+    let height = "document.getElementById('report').getBoundingClientRect().height";
+    let first = page.browser.evaluate(height).as_f64().unwrap();
+    page.browser.evaluate("document.getElementById('report').style.width = '300px'");
+    page.browser.wait_until(&format!("{height} > {}", 1.05 * first), SOON);
+    page.browser.evaluate("document.getElementById('report').style.width = ''");
+    page.browser.wait_until(&format!("Math.abs({height} - {first}) < 2"), SOON);
+    page.browser.evaluate(
+        "document.getElementById('report').contentDocument.querySelector('a[href^=\"#\"]').click()",
+    );
+    page.browser.wait_until(&format!("{report} === 'Missing effect'"), SOON);
+    page.is_quiet();
 }
 
 /// Three records of a driven joint at once.
@@ -225,6 +237,7 @@ fn driven_records_are_diagnosed_together_as_by_the_program() {
     let nominal = PathBuf::from(file("nominal.toml"));
     page.drop(&[&records[..], &[&nominal]].concat());
     assert_eq!(page.browser.evaluate("document.querySelectorAll('#logs article').length"), 3);
+    assert_eq!(page.browser.evaluate("document.getElementById('estimate').hidden"), true);
     let found = page.diagnosis();
     let mut apart = Vec::new();
     differences(&found, &by_the_program(&records, &nominal), "", &mut apart);

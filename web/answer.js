@@ -26,23 +26,44 @@ export const answered = (answer, logs, options) => {
   const command = ["trainer diagnose", ...logs.map((log) => word(log.name)), `--nominal ${word(nominal.name)}`, ...words(options)].join(" ");
   fill($("take"),
     make("p", { class: "sentence" }, answer.summary),
-    make("p", {}, make("button", { type: "button", class: "button", onclick: () => save("diagnosis.zip", [zip(files)], "application/zip") }, "Save all (ZIP)")),
-    make("details", {}, make("summary", {}, "Files"), make("ul", { class: "files" }, ...each)),
+    make("p", { class: "buttons" },
+      taken(files, "repaired.toml", "Save the repaired simulator"),
+      taken(files, "report.html", "Save the report"),
+      make("button", { type: "button", class: "button", onclick: () => save("diagnosis.zip", [zip(files)], "application/zip") }, "Save all (ZIP)")),
+    make("details", {}, make("summary", {}, "Files, one by one"), make("ul", { class: "files" }, ...each)),
     make("p", { class: "note" }, "The same on the command line, with this nominal.toml beside the log:"),
     make("pre", { tabindex: "0", id: "command" }, command));
   $("answer").hidden = false;
   show(files.find((file) => file.name === "report.html").text);
 };
 
+const taken = (files, name, words) => {
+  const file = files.find((file) => file.name === name);
+  return file && make("button", { type: "button", class: "button", onclick: () => save(name, [file.text]) }, words);
+};
+
 // Shows the report as long as it is: one page, one scroll bar.
 const show = (html) => {
   const frame = $("report");
   frame.onload = () => {
-    const body = frame.contentDocument?.body;
-    if (!body) return;
-    const fit = () => { frame.style.height = `${frame.contentDocument.documentElement.scrollHeight + 8}px`; };
-    new frame.contentWindow.ResizeObserver(fit).observe(body);
+    const report = frame.contentDocument;
+    if (!report?.body) return;
+    // The body's own height: that of the document is never less than the frame's, which would then never shrink.
+    const fit = () => {
+      const below = parseFloat(frame.contentWindow.getComputedStyle(report.body).marginBottom);
+      frame.style.height = `${Math.ceil(report.body.getBoundingClientRect().bottom + frame.contentWindow.scrollY + below)}px`;
+    };
+    new frame.contentWindow.ResizeObserver(fit).observe(report.body);
     fit();
+    // A place in a report without an address of its own would be looked for in this page.
+    report.addEventListener("click", (event) => {
+      const place = event.target.closest?.('a[href^="#"]')?.getAttribute("href").slice(1);
+      if (place === undefined) return;
+      event.preventDefault();
+      const target = report.getElementById(decodeURIComponent(place));
+      for (let folded = target?.closest("details"); folded; folded = folded.parentElement.closest("details")) folded.open = true;
+      target?.scrollIntoView();
+    });
   };
   frame.srcdoc = html;
 };

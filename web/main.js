@@ -48,6 +48,7 @@ const take = async (files) => {
     await look(text && { name: simulator.name, text });
   } else if (text && logs.length) {
     nominal.dropped(simulator.name, text);
+    hide("answer");
   } else {
     say("Drop a log beside the simulator.");
   }
@@ -66,6 +67,8 @@ const look = async (simulator) => {
     $("log").hidden = false;
     const readable = found.filter((log) => !log.error);
     $("reading").open = readable.length < found.length;
+    // Only a free decay has an envelope.
+    $("estimate").hidden = readable.every((log) => log.found.oscillator.input_gain_per_inertia);
     $("simulator").hidden = readable.length < found.length;
     offerNominal(readable, simulator);
     estimate();
@@ -101,11 +104,12 @@ const diagnose = async () => {
     $("answer-title").scrollIntoView();
   } catch (error) {
     if (error instanceof Cancelled) say("Cancelled.");
-    else refuse(error.message);
+    refuse(error instanceof Cancelled ? "Cancelled." : error.message);
   } finally {
     progress.end();
     $("cancel").hidden = true;
     $("diagnose").disabled = false;
+    $("diagnose").focus({ preventScroll: true });
   }
 };
 
@@ -124,6 +128,10 @@ const listen = () => {
   $("diagnose").addEventListener("click", diagnose);
   $("estimate").addEventListener("toggle", estimate);
   $("cancel").addEventListener("click", () => engine.cancel());
+  // An answer is about the simulator that was asked about.
+  for (const [place, event] of [["nominal", "input"], ["nominal-form", "input"], ["nominal-kinds", "change"]]) {
+    $(place).addEventListener(event, () => hide("answer"));
+  }
   $("options").addEventListener("submit", (event) => { event.preventDefault(); look(); });
 };
 

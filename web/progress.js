@@ -31,6 +31,7 @@ export class Progress {
   }
 
   #since = 0;
+  #shown = 0;
 
   #seconds() {
     return (performance.now() - this.#start) / 1000;
@@ -39,9 +40,13 @@ export class Progress {
   #show() {
     const seconds = this.#seconds();
     const known = this.#passed > 0.05 && this.#since > 0.5;
-    const left = known ? Math.max(0, this.#since / this.#passed - seconds) : null;
-    const told = left === null ? "" : left < 1 ? ", nearly done" : `, about ${Math.ceil(left)} s left`;
-    $("bar").value = Math.max(this.#passed, left === null ? 0 : Math.min(0.99, seconds / (seconds + left)));
+    // A stage that takes longer than usual says nothing about the ones after it.
+    const next = Math.min(...Object.values(PASSED).filter((part) => part > this.#passed), 1);
+    const part = known ? Math.min(next, (this.#passed * seconds) / this.#since) : this.#passed;
+    const left = known && part < next ? this.#since / this.#passed - seconds : null;
+    const told = left === null ? "" : `, about ${Math.ceil(left)} s left`;
+    this.#shown = Math.max(this.#shown, part);
+    $("bar").value = this.#shown;
     $("stage").textContent = `${this.#stage}, ${seconds.toFixed(0)} s${told}`;
   }
 
