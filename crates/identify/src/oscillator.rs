@@ -74,7 +74,9 @@ impl Estimated {
         self.value.abs() > SIGNIFICANT * self.std_error
     }
 
-    pub(crate) fn times(self, factor: f64) -> Self {
+    /// Returns the value and its standard error times a factor.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, std_error: self.std_error * factor.abs() }
     }
 }

@@ -5,7 +5,6 @@ use crate::record::Record;
 use dynamics::{Active, Coefficients, Coordinate, KnownEffect, NominalSimulator};
 use experiment::StatedNominal;
 use std::path::Path;
-use workflow::read::coordinate_of;
 use workflow::{Reading, WorkflowError, guess, nominal};
 
 /// The nominal simulator: a linear oscillator with the effects that it already has.
@@ -67,8 +66,7 @@ impl Nominal {
         let oscillator = identify::identify(&record.loaded.record, &record.clock()?).map_err(|problem| {
             Error::Record(WorkflowError::Identify { file: source.path.clone(), source: problem })
         })?;
-        let coordinate = coordinate_of(source.reading.coordinate);
-        Self::parse("nominal.toml", &guess::nominal_toml(&source.path, &oscillator, coordinate))
+        Self::parse("nominal.toml", &guess::nominal_toml(&source.path, &oscillator, &source.reading))
     }
 
     /// Reads a nominal simulator from a `nominal.toml`.

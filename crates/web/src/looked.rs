@@ -7,7 +7,6 @@ use report::format::with_uncertainty;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use workflow::look::Looked;
-use workflow::read::coordinate_of;
 use workflow::{Log, guess};
 
 /// Request to look at the logs.
@@ -40,7 +39,6 @@ fn titles(log: &Log) -> Vec<String> {
 
 fn shown(log: &Log, found: &Looked) -> Value {
     let findings: Vec<String> = found.findings().into_iter().chain(found.remarks()).collect();
-    let coordinate = coordinate_of(found.look.source.reading.coordinate);
     let told = |estimated: Option<identify::Estimated>| {
         estimated.map(|estimated| with_uncertainty(estimated.value, estimated.std_error))
     };
@@ -55,7 +53,7 @@ fn shown(log: &Log, found: &Looked) -> Value {
         "uncertainty": number.damping.std_error,
         "diagnosable": found.is_diagnosable(),
         "without_input": found.without_input,
-        "nominal": guess::nominal_toml(&log.name, &found.oscillator, coordinate),
+        "nominal": guess::nominal_toml(&log.name, &found.oscillator, &found.look.source.reading),
         "pictures": picture(&found.look),
     })
 }

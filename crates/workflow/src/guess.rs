@@ -1,16 +1,37 @@
 //! First guess of a nominal simulator, and the files that `trainer init` writes.
 
+use crate::read::coordinate_of;
 use dynamics::Coordinate;
 use identify::{Basis, Estimated, LinearOscillator};
-use record::two_digits;
+use record::{Unit, two_digits};
 use std::fmt::Write;
 
-/// Writes a guess of a nominal simulator as a commented `nominal.toml`.
+/// Returns the inertia in kg m² or kg, with the sign of the input, if the log holds the torque or the force that drives
+/// an angle or a displacement: the inertia is what that has to be divided by.
+fn inertia(oscillator: &LinearOscillator, reading: &record::Reading) -> Option<(Estimated, f64)> {
+    let gain = oscillator.input_gain.filter(|gain| gain.is_significant())?;
+    let unit = |column: &record::ColumnReading| Unit::parse(column.unit.as_ref()?);
+    let torque = match coordinate_of(reading.coordinate) {
+        Coordinate::Angle => "N m",
+        Coordinate::Displacement => "N",
+    };
+    let drives = unit(reading.input.as_ref()?)?.si() == torque;
+    // The signal of a sensor stands for meters of its own.
+    let observes = !unit(&reading.value)?.is_signal();
+    let size = gain.value.abs();
+    let found = Estimated { value: 1.0 / size, std_error: gain.std_error / (size * size) };
+    (drives && observes).then_some((found, gain.value.signum()))
+}
+
+/// Writes a guess of a nominal simulator as a commented `nominal.toml`: in SI units if the log, which was read as stated,
+/// holds the torque or the force that drives it, else per unit of inertia.
 #[must_use]
-pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordinate) -> String {
-    let (position, inertia, torque) = match coordinate {
-        Coordinate::Angle => ("rad", "kg m^2", "torque"),
-        Coordinate::Displacement => ("m", "kg", "force"),
+pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, reading: &record::Reading) -> String {
+    let coordinate = coordinate_of(reading.coordinate);
+    let known = inertia(oscillator, reading);
+    let (position, mass, torque, damping) = match coordinate {
+        Coordinate::Angle => ("rad", "kg m^2", "torque", "N m s/rad"),
+        Coordinate::Displacement => ("m", "kg", "force", "N s/m"),
     };
     let mut text = format!(
         "# The linear oscillator nearest to {log}, as `trainer init` found it. Where you have a simulator, put its numbers\n\
@@ -30,12 +51,12 @@ pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordi
             line("damping_ratio", digits(passive(ratio)), format!("± {}", error(ratio)));
         }
         _ => {
-            line("inertia", "1.0".to_owned(), "everything is per unit of inertia".to_owned());
-            line(
-                "damping",
-                digits(passive(oscillator.damping)),
-                format!("1/s, over the inertia, ± {}", error(oscillator.damping)),
-            );
+            let found = passive(oscillator.damping);
+            let (unit, found) = match known {
+                Some((inertia, _)) => (damping, found.times(inertia.value)),
+                None => ("1/s, over the inertia", found),
+            };
+            line("damping", digits(found), format!("{unit}, ± {}", error(found)));
             line("stiffness", "0.0".to_owned(), format!("the record shows no restoring {torque}"));
         }
     }
@@ -43,17 +64,24 @@ pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordi
         Some(rest) => line("rest_angle", digits(rest), format!("{position}, ± {}", error(rest))),
         None => line("rest_angle", "0.0".to_owned(), position.to_owned()),
     }
-    if let Some(gain) = oscillator.input_gain {
-        let comment = format!("{torque} over the inertia, per unit of the input, ± {}", error(gain));
-        line("input_gain", digits(gain), comment);
+    match (known, oscillator.input_gain) {
+        (Some((inertia, sign)), _) => {
+            line(
+                "inertia",
+                digits(inertia),
+                format!("{mass}, by the recorded {torque}, ± {}", error(inertia)),
+            );
+            line("input_gain", format!("{sign:?}"), format!("the input is the {torque}"));
+            return text;
+        }
+        (None, Some(gain)) => {
+            let comment = format!("{torque} over the inertia, per unit of the input, ± {}", error(gain));
+            line("input_gain", digits(gain), comment);
+        }
+        (None, None) => {}
     }
-    if oscillator.natural_frequency_hz().is_some() {
-        line(
-            "# inertia",
-            "1.0".to_owned(),
-            format!("{inertia}; left out, everything is per unit of inertia"),
-        );
-    }
+    let key = if oscillator.natural_frequency_hz().is_some() { "# inertia" } else { "inertia" };
+    line(key, "1.0".to_owned(), format!("{mass}; left out, everything is per unit of inertia"));
     text
 }
 
@@ -136,7 +164,6 @@ fn error(estimated: Estimated) -> String {
 #[cfg(test)]
 mod tests {
     use super::{configuration, digits, nominal_toml};
-    use dynamics::Coordinate;
     use identify::{Basis, Estimated, LinearOscillator};
 
     fn of(value: f64, std_error: f64) -> Estimated {
@@ -168,14 +195,42 @@ mod tests {
             basis: Basis::Windows(99),
             ..swinging
         };
-        for (oscillator, coordinate) in [(swinging, Coordinate::Angle), (drive, Coordinate::Displacement)] {
-            let text = nominal_toml("log.csv", &oscillator, coordinate);
+        let stated = |oscillator: &LinearOscillator, reading: &record::Reading| {
+            let text = nominal_toml("log.csv", oscillator, reading);
             let document = settings::Document::parse("nominal.toml", &text).unwrap();
-            let stated = experiment::resolve_nominal(&document).unwrap();
+            experiment::resolve_nominal(&document).unwrap()
+        };
+        let angle = record::Reading::default();
+        let length =
+            record::Reading { coordinate: record::Coordinate::Displacement, ..record::Reading::default() };
+        for (oscillator, reading) in [(&swinging, &angle), (&drive, &length)] {
+            let stated = stated(oscillator, reading);
             let coefficients = stated.nominal.coefficients();
             let found = oscillator.stiffness.value / coefficients.inertia;
-            assert!((coefficients.stiffness - found).abs() <= 1e-3 * found, "{text}");
+            assert!((coefficients.stiffness - found).abs() <= 1e-3 * found);
             assert_eq!(stated.driven, oscillator.input_gain.is_some());
+        }
+        // A recorded force tells the mass: 1/0.31 kg. A voltage does not, nor does a force beside a sensor's signal.
+        let column = |unit: &str| record::ColumnReading { unit: Some(unit.to_owned()), ..Default::default() };
+        let both = LinearOscillator { input_gain: Some(of(-0.31, 0.01)), ..swinging };
+        for (value, input, inertia, gain) in
+            [("mm", "N", 1.0 / 0.31, -1.0), ("mm", "V", 1.0, -0.31), ("V", "N", 1.0, -0.31)]
+        {
+            let reading =
+                record::Reading { value: column(value), input: Some(column(input)), ..length.clone() };
+            for (oscillator, sign) in [(&both, 1.0), (&drive, -1.0)] {
+                let found = stated(oscillator, &reading).nominal.coefficients();
+                assert!((found.inertia / inertia - 1.0).abs() < 1e-2, "{value} {input}: {found:?}");
+                assert!((found.input_gain * sign - gain).abs() < 1e-2, "{value} {input}: {found:?}");
+                let per_inertia = [found.stiffness, found.damping].map(|own| own / found.inertia);
+                let wanted = [oscillator.stiffness.value, oscillator.damping.value];
+                assert!(
+                    per_inertia
+                        .iter()
+                        .zip(wanted)
+                        .all(|(own, wanted)| (own - wanted).abs() < 1e-2 * wanted.max(0.1))
+                );
+            }
         }
     }
 

@@ -11,7 +11,6 @@ use crate::outcome::Outcome;
 use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
-use dynamics::Coordinate;
 use identify::Estimated;
 use modes::uncertain;
 use record::Fault;
@@ -22,7 +21,7 @@ use shell::{given, path_from, path_word};
 use std::path::{Path, PathBuf};
 use workflow::guess as files;
 use workflow::look::{Looked, changing};
-use workflow::read::{bias, coordinate_of};
+use workflow::read::bias;
 use workflow::{Log, WorkflowError};
 
 /// Inspects a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
@@ -59,7 +58,6 @@ struct Found {
     reading: Reading,
     /// Frequency and damping of each log; empty for a single log.
     each: Vec<EachLog>,
-    coordinate: Coordinate,
     folder: PathBuf,
     /// Remarks from trying the commands: a damping ratio that changes along the decay, and refusals.
     tried: Vec<String>,
@@ -108,15 +106,12 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
     let mut surest = looked.into_iter().next().ok_or_else(none)?;
     surest.look.source.findings.extend(logs.first().and_then(|first| first.note.clone()));
-    let coordinate = coordinate_of(surest.look.source.reading.coordinate);
     let (files, next, tried) = (Vec::new(), Vec::new(), Vec::new());
     let mut reading = arguments.reading.clone();
     if surest.without_input {
         reading.input = Some("none".to_owned());
     }
-    Ok(Found { surest, reading, each, coordinate, folder, tried, files, next }
-        .with_diagnosis(log, bias)
-        .with_estimate())
+    Ok(Found { surest, reading, each, folder, tried, files, next }.with_diagnosis(log, bias).with_estimate())
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
@@ -176,7 +171,7 @@ impl Found {
     fn with_diagnosis(mut self, log: &Path, bias: bool) -> Self {
         let (Looked { look, oscillator, .. }, reading) = (&self.surest, &self.reading);
         let file = self.folder.join("nominal.toml");
-        let text = files::nominal_toml(&look.source.path, oscillator, self.coordinate);
+        let text = files::nominal_toml(&look.source.path, oscillator, &look.source.reading);
         if self.surest.is_diagnosable() {
             let reading = Reading { remove_mean: bias || reading.remove_mean, ..reading.clone() };
             match tried::diagnosis(log, (&file, &text), &reading.plain()) {
