@@ -4,7 +4,7 @@
 //! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of the one-step error (Ljung, System Identification, 2nd
 //! ed. 1999, section 4.2). The order is the one whose free run has the smallest validation error.
 
-use crate::data::DataSet;
+use crate::data::{DataSet, LEAST_PAST};
 use crate::judge::validation_error;
 use crate::linear::least_squares;
 use crate::{Ahead, LearnError, Model, Past, Predicted};
@@ -47,7 +47,7 @@ impl Arx {
     pub(crate) fn validated(data: &DataSet, ridges: &[f64]) -> Result<Self, LearnError> {
         // Without a training part no order fits; this is refused below.
         let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min().unwrap_or(0);
-        let orders = ORDERS.iter().filter(|order| **order < shortest.max(8));
+        let orders = ORDERS.iter().filter(|order| **order < shortest.max(LEAST_PAST));
         let fitted = orders
             .flat_map(|&order| ridges.iter().map(move |&ridge| (order, ridge)))
             .filter_map(|(order, ridge)| of(data, order, ridge));

@@ -8,7 +8,7 @@ pub struct Persistence;
 
 impl Model for Persistence {
     fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
-        // A past has at least eight samples.
+        // A past has samples.
         let last = past.values.last().copied().unwrap_or_default();
         Ok(Predicted { values: vec![last; ahead.times_s.len()], std: None })
     }

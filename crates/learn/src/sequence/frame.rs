@@ -3,7 +3,7 @@
 use super::Settings;
 use super::grid::evened;
 use crate::baselines::Arx;
-use crate::data::{DataSet, Scale, Trajectory};
+use crate::data::{DataSet, LEAST_PAST, Scale, Trajectory};
 use crate::{Ahead, LearnError, Model, Past};
 use burn::tensor::{Device, Tensor};
 use dynamics::Hold;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Largest number of samples in a past.
 const MOST_PAST: usize = 96;
 
-/// Smallest number of samples in a past, and in a block.
+/// Smallest number of samples in a block.
 const LEAST: usize = 8;
 
 /// Lower limit of the linear prediction's typical error, as a share of the spread of positions.
@@ -63,7 +63,7 @@ impl Framed {
         let stride = (data.period_s / own_s / settings.samples_per_period as f64).ceil().max(1.0);
         let interval_s = own_s * stride;
         let past =
-            ((data.warm_up_s / interval_s * (1.0 + 1e-9)).floor() as usize + 1).clamp(LEAST, MOST_PAST);
+            ((data.warm_up_s / interval_s * (1.0 + 1e-9)).floor() as usize + 1).clamp(LEAST_PAST, MOST_PAST);
         let block = ((settings.block_periods * data.period_s / interval_s).round() as usize).max(LEAST);
         let mut frame = Frame {
             interval_s,

@@ -2,29 +2,14 @@
 
 use crate::data::{Trajectory, interpolated};
 use crate::{Ahead, LearnError, Past};
-use dynamics::Hold;
+use dynamics::{Hold, Input};
 
 /// Returns the mean of an input over `interval` seconds from `time` on. Before the first and after the last
 /// sample, the input is constant.
-fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f64)) -> f64 {
-    let at = |time: f64| {
-        let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
-        let before = next.saturating_sub(1);
-        // A trajectory has samples, and indices are clipped to them.
-        let pick = |column: &[f64], place: usize| column.get(place).copied().unwrap_or_default();
-        let (from, to) = (pick(times, before), pick(times, next));
-        let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        match hold {
-            Hold::Linear | Hold::BandLimited => {
-                pick(input, before) + share * (pick(input, next) - pick(input, before))
-            }
-            Hold::Zero if share < 1.0 => pick(input, before),
-            Hold::Zero => pick(input, next),
-        }
-    };
-    // Midpoint rule: with even timestamps, the first midpoint reads the sample itself.
+fn averaged(input: &Input, (time, interval): (f64, f64)) -> f64 {
+    // Midpoint rule: with even timestamps, the first midpoint of a held input reads the sample itself.
     let parts = 8;
-    let mid = |part: i32| at(time + (f64::from(part) + 0.5) * interval / f64::from(parts));
+    let mid = |part: i32| input.at(time + (f64::from(part) + 0.5) * interval / f64::from(parts));
     (0..parts).map(mid).sum::<f64>() / f64::from(parts)
 }
 
@@ -35,10 +20,10 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Tra
     let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
     let times: Vec<f64> = (0..count).map(|at| first + at as f64 * interval).collect();
     let values = times.iter().map(|&time| interpolated(part.times_s(), part.values(), time)).collect();
-    let mean = |input: &[f64]| {
-        times.iter().map(|&time| averaged(part.times_s(), input, hold, (time, interval))).collect()
-    };
-    let input = part.input().map(mean);
+    let given = |input: &[f64]| Input::new(part.times_s().to_vec(), input.to_vec(), hold);
+    let input = part.input().map(given).transpose()?;
+    let mean = |input: Input| times.iter().map(|&time| averaged(&input, (time, interval))).collect();
+    let input = input.map(mean);
     Trajectory::new(part.name(), times, values, input)
 }
 
@@ -67,13 +52,14 @@ pub(super) fn inputs(
     hold: Hold,
     interval: f64,
     [before, after]: [usize; 2],
-) -> Option<Vec<f64>> {
-    let input = [past.input?, ahead.input?].concat();
+) -> Result<Option<Vec<f64>>, LearnError> {
+    let Some((before_now, after_now)) = past.input.zip(ahead.input) else { return Ok(None) };
     let times = [past.times_s, ahead.times_s].concat();
-    // A past has at least eight samples.
+    let input = Input::new(times, [before_now, after_now].concat(), hold)?;
+    // A past has samples.
     let last = past.times_s.last().copied().unwrap_or_default();
     let time = |at: usize| last + (at as f64 - before as f64 + 1.0) * interval;
-    Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect())
+    Ok(Some((0..before + after).map(|at| averaged(&input, (time(at), interval))).collect()))
 }
 
 /// Interpolates values at the times of a record from values at even times that start at `first`.

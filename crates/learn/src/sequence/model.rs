@@ -70,7 +70,7 @@ impl<A: Architecture> SequenceModel<A> {
         let run = |(record, part): (usize, &Trajectory), share: f64| {
             let begin = (share * part.len() as f64) as usize;
             let part = part.part(begin, part.len());
-            let now = part.samples_within(data.warm_up_s).max(8);
+            let now = data.warm_up_samples(&part);
             let input = |from: usize, to: usize| part.input().and_then(|input| input.get(from..to));
             let past = Past {
                 times_s: part.times_s().get(..now)?,
@@ -101,7 +101,7 @@ impl<A: Architecture> SequenceModel<A> {
 
 /// Returns the times ahead, counted from the end of the past.
 fn leads(past: &Past<'_>, ahead: &Ahead<'_>) -> Vec<f64> {
-    // A past has at least eight samples.
+    // A past has samples.
     let now = past.times_s.last().copied().unwrap_or_default();
     ahead.times_s.iter().map(|time| time - now).collect()
 }
@@ -118,7 +118,7 @@ impl<A: Architecture> Model for SequenceModel<A> {
         let start = past_positions(past, frame.interval_s, frame.past)?;
         let mut positions: Vec<f64> = start.iter().map(|&value| frame.position_in(value)).collect();
         positions.resize(frame.past + after, 0.0);
-        let given = inputs((past, ahead), frame.hold, frame.interval_s, [frame.past, after]);
+        let given = inputs((past, ahead), frame.hold, frame.interval_s, [frame.past, after])?;
         let rows = Rows {
             count: 1,
             length: positions.len(),
