@@ -30,17 +30,40 @@ fn held(data: DataSet, stated: Option<Hold>) -> DataSet {
     DataSet { hold: stated.unwrap_or_else(|| likely_hold(&data)), ..data }
 }
 
-/// Returns the interpolation of the inputs with the smallest weak-form residual of a law of all terms, on the
-/// training part; the first of equals. [`Hold::Zero`] without an input.
+/// Lengths of the windows of the weak form, in periods.
+///
+/// A law of all terms may still lack something, such as a hidden state, whose residual hides the input in long
+/// windows. Short ones weigh the high frequencies, at which an input's course between its samples matters most and
+/// at which inertia alone decides how a system follows.
+const WINDOWS: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// Fewest sampling intervals in a window.
+const LEAST_WINDOW: f64 = 8.0;
+
+/// Returns the interpolation of the inputs with the smallest weak-form residual of a law of all terms on the training
+/// part, in the windows that distinguish interpolations most. [`Hold::Zero`] without an input.
 fn likely_hold(data: &DataSet) -> Hold {
-    let left = |hold: Hold| {
-        let train = data.train.iter().map(|part| filtered(part, hold)).collect::<Option<Vec<_>>>()?;
-        let rows = regression(&DataSet { train, ..data.clone() }, &Term::ALL);
-        let weights = least_squares(&rows.rows, &rows.right)?;
-        Some((hold, (&rows.right - &rows.rows * weights).norm()))
-    };
-    let found = Hold::ALL.into_iter().filter_map(left).min_by(|a, b| a.1.total_cmp(&b.1));
-    found.map_or(Hold::Zero, |(hold, _)| hold)
+    // Without a training part there is no input.
+    let rate_hz = data.train.first().map_or(0.0, Trajectory::rate_hz);
+    let told = WINDOWS.iter().filter_map(|periods| {
+        let window_s = (periods * data.period_s).max(LEAST_WINDOW / rate_hz);
+        let left: Vec<(Hold, f64)> =
+            Hold::ALL.into_iter().filter_map(|hold| Some((hold, residual(data, hold, window_s)?))).collect();
+        let best = *left.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let worst = left.iter().map(|own| own.1).fold(0.0, f64::max);
+        Some((best.0, worst / best.1))
+    });
+    // Of equals, the first, whose windows are the longest.
+    let most = told.reduce(|most, own| if own.1 > most.1 { own } else { most });
+    most.map_or(Hold::Zero, |(hold, _)| hold)
+}
+
+/// Returns the weak-form residual of a law of all terms in windows of this length; `None` without an input.
+fn residual(data: &DataSet, hold: Hold, window_s: f64) -> Option<f64> {
+    let train = data.train.iter().map(|part| filtered(part, hold)).collect::<Option<Vec<_>>>()?;
+    let rows = regression(&DataSet { train, period_s: window_s, ..data.clone() }, &Term::ALL);
+    let weights = least_squares(&rows.rows, &rows.right)?;
+    Some((&rows.right - &rows.rows * weights).norm())
 }
 
 /// Returns a trajectory whose input at each sample is replaced by the number whose sum with a test function over

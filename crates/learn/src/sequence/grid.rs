@@ -28,12 +28,23 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Tra
 }
 
 /// Returns the positions at the last `count` even times of a past; the last one is its last sample.
-pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Result<Vec<f64>, LearnError> {
+/// The first sample of a past that is too short is repeated before it if `repeats` is set.
+pub(super) fn past_positions(
+    past: &Past<'_>,
+    interval: f64,
+    count: usize,
+    repeats: bool,
+) -> Result<Vec<f64>, LearnError> {
     let (first, last) = (past.times_s.first().copied(), past.times_s.last().copied());
     // A past without samples is too short, which is refused below.
     let (first, last) = (first.unwrap_or_default(), last.unwrap_or_default());
     // Jitter may shorten a past by part of an interval; the cubic interpolation bridges this gap.
     let there = ((last - first) / interval + 0.5).floor() as usize + 1;
+    if repeats && there < count {
+        let before = past.values.first().copied().into_iter();
+        let own = past_positions(past, interval, there, false)?;
+        return Ok(before.cycle().take(count - there).chain(own).collect());
+    }
     if there < count || past.times_s.len() < 4 {
         return Err(LearnError::ShortPast {
             samples: there.min(past.times_s.len()),
@@ -95,7 +106,7 @@ mod tests {
         let motion = |time: f64| (6.0 * time).sin();
         let values: Vec<f64> = times.iter().map(|&time| motion(time)).collect();
         let past = Past { times_s: &times[..100], values: &values[..100], input: None };
-        let even = past_positions(&past, 0.02, 40).unwrap();
+        let even = past_positions(&past, 0.02, 40, false).unwrap();
         let last = times[99];
         assert!((even[0] - motion(last - 39.0 * 0.02)).abs() < 1e-4);
         let ahead: Vec<f64> = (0..100).map(|at| motion(last + 0.02 * f64::from(at))).collect();
@@ -109,7 +120,7 @@ mod tests {
     fn a_past_that_is_too_short_says_how_long_it_has_to_be() {
         let times = [0.0, 0.1, 0.2, 0.3, 0.4];
         let past = Past { times_s: &times, values: &times, input: None };
-        let error = past_positions(&past, 0.1, 8).unwrap_err().to_string();
+        let error = past_positions(&past, 0.1, 8, false).unwrap_err().to_string();
         assert!(error.contains("5 of the 8 samples") && error.contains("0.700 s"), "{error}");
     }
 }

@@ -3,7 +3,7 @@
 use super::law::{Guess, Law, State};
 use crate::data::{DataSet, Trajectory};
 use crate::flow::first_guess;
-use crate::learners::library::Term;
+use crate::learners::library::{Term, weighted};
 use crate::learners::weak_sindy::regression;
 use crate::linear::least_squares;
 use serde::{Deserialize, Serialize};
@@ -88,10 +88,9 @@ impl Law for BoucWen {
         else {
             return String::new();
         };
-        format!(
-            "theta_ddot = {gain:.5}*u - {damping:.5}*theta_dot - {stiffness:.5}*theta + {constant:.5} - z, z_dot = \
-             {hysteretic:.5}*theta_dot - |z|^{exponent:.4}*({dissipation:.5}*|theta_dot|*sign(z) + \
-             {asymmetry:.5}*theta_dot)"
-        )
+        let motion = [(*gain, "*u"), (-damping, "*theta_dot"), (-stiffness, "*theta"), (*constant, "")];
+        let memory = [(*dissipation, "*|theta_dot|*sign(z)"), (*asymmetry, "*theta_dot")];
+        let (motion, memory) = (weighted(&motion), weighted(&memory));
+        format!("theta_ddot ={motion} - z, z_dot = {hysteretic:.5}*theta_dot - |z|^{exponent:.4}*({memory} )")
     }
 }

@@ -104,30 +104,51 @@ impl Settings {
     }
 }
 
-/// Fit of one law from one start.
-struct Candidate {
-    model: GreyBox,
-    validation: f64,
+/// Search from one start of one law.
+struct Search<'a> {
+    name: &'a str,
+    form: Form,
+    guess: Guess,
+    point: Point,
+    /// Typical hidden state.
+    hidden: f64,
+    /// Root mean square error of the latest fit.
+    rms: f64,
     reached: Reached,
 }
+
+/// Searches whose first fit is worse than the best one by more than this factor are given up.
+const GIVEN_UP: f64 = 3.0;
 
 impl Learner for Settings {
     fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
         let mut trace = Trace { context, steps: 0, train: f64::INFINITY };
-        let mut best: Option<Candidate> = None;
+        let mut searches = Vec::new();
         for name in &self.laws {
             let Some(form) = Form::named(name, data) else { continue };
             for guess in form.law().guesses(data) {
-                let candidate = self.candidate(name, &form, guess, data, &mut trace)?;
-                if best.as_ref().is_none_or(|best| candidate.validation < best.validation) {
-                    best = Some(candidate);
-                }
+                let mut search = Search::new(name, form.clone(), guess, data);
+                self.stretch(&mut search, 0, data, &mut trace)?;
+                searches.push(search);
+            }
+        }
+        let least = searches.iter().map(|search| search.rms).fold(f64::INFINITY, f64::min);
+        let mut best: Option<(f64, GreyBox, Reached)> = None;
+        for mut search in searches.into_iter().filter(|search| search.rms <= GIVEN_UP * least) {
+            for length in 1..LENGTHS.len() {
+                self.stretch(&mut search, length, data, &mut trace)?;
+            }
+            let model = search.model(data);
+            let validation = validation_error(&model, data);
+            trace.chosen(search.name, validation);
+            if best.as_ref().is_none_or(|(least, ..)| validation < *least) {
+                best = Some((validation, model, search.reached));
             }
         }
         let none =
             "no law applies: they need an input, and tanks positive levels; state others in laws".to_owned();
-        let best = best.ok_or(LearnError::Unsolvable { what: ID, problem: none })?;
-        Ok(Fitted { model: Box::new(best.model), reached: best.reached, steps: trace.steps })
+        let (_, model, reached) = best.ok_or(LearnError::Unsolvable { what: ID, problem: none })?;
+        Ok(Fitted { model: Box::new(model), reached, steps: trace.steps })
     }
 }
 
@@ -139,56 +160,78 @@ struct Trace<'a> {
     train: f64,
 }
 
+impl<'a> Search<'a> {
+    fn new(name: &'a str, form: Form, guess: Guess, data: &DataSet) -> Self {
+        let start = |part| form.law().start(part, data.period_s, guess.hidden);
+        let point =
+            Point { parameters: guess.parameters.clone(), starts: data.train.iter().map(start).collect() };
+        let (hidden, rms, reached) = (guess.hidden, f64::INFINITY, Reached::BudgetSpent);
+        Self { name, point, hidden, rms, reached, form, guess }
+    }
+
+    fn model(&self, data: &DataSet) -> GreyBox {
+        let about = About {
+            form: self.form.clone(),
+            running: Running::new(data, data.noise),
+            state_sizes: self.form.law().sizes(data),
+            spread: data.scale.position,
+            unit: data.unit.clone(),
+        };
+        GreyBox::new(about, self.point.parameters.clone(), self.hidden)
+    }
+}
+
 impl Settings {
-    fn candidate(
+    /// Fits the starts of the training parts, up to one of the [`LENGTHS`].
+    fn stretch(
         &self,
-        name: &str,
-        form: &Form,
-        guess: Guess,
+        search: &mut Search<'_>,
+        length: usize,
         data: &DataSet,
         trace: &mut Trace<'_>,
-    ) -> Result<Candidate, LearnError> {
+    ) -> Result<(), LearnError> {
         let running = Running::new(data, data.noise);
-        let (law, state_sizes) = (form.law(), form.law().sizes(data));
-        let all: Vec<usize> = (0..guess.parameters.len()).collect();
-        let starts = data.train.iter().map(|part| law.start(part, data.period_s, guess.hidden)).collect();
-        let mut point = Point { parameters: guess.parameters, starts };
-        let (mut reached, mut hidden) = (Reached::BudgetSpent, guess.hidden);
-        for (number, periods) in LENGTHS.iter().enumerate() {
-            let is_last = number + 1 == LENGTHS.len();
-            let pieces = self.pieces(data, periods * data.period_s, &running)?;
-            let count: usize = pieces.iter().map(|piece| piece.values.len()).sum();
-            let runs = Runs {
-                law,
-                pieces: &pieces,
-                running: &running,
-                sizes: &guess.sizes,
-                state_sizes,
-                free: if is_last { &all } else { &guess.first },
-                spread: data.scale.position,
-            };
-            let from =
-                Point { starts: point.starts.iter().take(pieces.len()).copied().collect(), ..point.clone() };
-            let phase =
-                if is_last { format!("{name}, whole parts") } else { format!("{name}, {periods} periods") };
-            let most = trace.context.steps(self.max_steps);
-            let (found, minimum) = runs.fit(&from, most, |step, rms| trace.observe(step, &phase, rms))?;
-            trace.context.check()?;
-            for (own, found) in point.starts.iter_mut().zip(&found.starts) {
-                *own = *found;
+        let all: Vec<usize> = (0..search.guess.parameters.len()).collect();
+        let is_last = length + 1 == LENGTHS.len();
+        // A caller's length is one of the list.
+        let periods = LENGTHS.get(length).copied().unwrap_or(f64::INFINITY);
+        let pieces = self.pieces(data, periods * data.period_s, &running)?;
+        let law = search.form.law();
+        let runs = Runs {
+            law,
+            pieces: &pieces,
+            running: &running,
+            sizes: &search.guess.sizes,
+            state_sizes: law.sizes(data),
+            free: if is_last { &all } else { &search.guess.first },
+            spread: data.scale.position,
+        };
+        let starts = search.point.starts.iter().take(pieces.len()).copied().collect();
+        let from = Point { starts, parameters: search.point.parameters.clone() };
+        let phase =
+            if is_last { "whole parts".to_owned() } else { format!("stretches of {periods} periods") };
+        let phase = format!("{}, {phase}", search.name);
+        let most = trace.context.steps(self.max_steps);
+        let (mut found, mut minimum) = runs.fit(&from, most, |step, rms| trace.observe(step, &phase, rms))?;
+        // Limits of states leave kinks in the error, at which a fit stops; with the numbers scaled anew, it goes on.
+        for _ in 1..if is_last { MOST_FITS } else { 1 } {
+            let (next, lower) = runs.fit(&found, most, |step, rms| trace.observe(step, &phase, rms))?;
+            let has_gained = lower.loss < GAINED * minimum.loss;
+            (found, minimum) = (next, lower);
+            if !has_gained {
+                break;
             }
-            point.parameters = found.parameters.clone();
-            hidden =
-                runs.motions(&found).iter().map(|motion| motion.hidden).sum::<f64>() / count.max(1) as f64;
-            let converged = matches!(minimum.reason, StopReason::Settled | StopReason::Stationary);
-            reached = if converged { Reached::Converged } else { Reached::BudgetSpent };
         }
-        let spread = data.scale.position;
-        let about = About { form: form.clone(), running, state_sizes, spread, unit: data.unit.clone() };
-        let model = GreyBox::new(about, point.parameters, hidden);
-        let validation = validation_error(&model, data);
-        trace.chosen(name, validation);
-        Ok(Candidate { model, validation, reached })
+        trace.context.check()?;
+        let count: usize = pieces.iter().map(|piece| piece.values.len()).sum();
+        let motions = runs.motions(&found);
+        search.hidden = motions.iter().map(|motion| motion.hidden).sum::<f64>() / count.max(1) as f64;
+        search.rms = data.scale.position * (minimum.loss / count.max(1) as f64).sqrt();
+        let converged = matches!(minimum.reason, StopReason::Settled | StopReason::Stationary);
+        search.reached = if converged { Reached::Converged } else { Reached::BudgetSpent };
+        search.point.starts.iter_mut().zip(found.starts).for_each(|(own, found)| *own = found);
+        search.point.parameters = found.parameters;
+        Ok(())
     }
 
     /// Returns the start of every training part, up to a length and to the largest number of samples.
@@ -205,6 +248,10 @@ impl Settings {
         Ok(pieces)
     }
 }
+
+/// Most fits of whole parts, and the share of the error below which the next one has to end for another.
+const MOST_FITS: usize = 12;
+const GAINED: f64 = 0.999;
 
 /// Fewest samples of a piece.
 const LEAST_PIECE: usize = 24;

@@ -9,6 +9,9 @@ use dynamics::Input;
 /// Fewest steps from a sample to the next.
 const FEWEST_STEPS: f64 = 4.0;
 
+/// Longest step, in those of a law whose torque may jump.
+const STEPS: f64 = 2.0;
+
 /// Stretch to be predicted: times, observations, and the input between them.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
@@ -74,7 +77,7 @@ fn interval(
     (length, [a, b, c, d]): (f64, [f64; 4]),
     longest_step_s: f64,
 ) -> State {
-    let steps = (length / longest_step_s - 1e-9).ceil().max(FEWEST_STEPS);
+    let steps = (length / (STEPS * longest_step_s) - 1e-9).ceil().max(FEWEST_STEPS);
     let step = length / steps;
     let input = |time: f64| a + time * (b + time * (c + time * d));
     for number in 0..steps as usize {

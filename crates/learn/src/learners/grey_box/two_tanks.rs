@@ -2,6 +2,7 @@
 
 use super::law::{Guess, Law, State};
 use crate::data::{DataSet, Trajectory};
+use crate::learners::library::weighted;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -102,10 +103,11 @@ impl Law for TwoTanks {
         let [pump, by_root, linear, lower_root, lower_linear, rim, share, lower_rim] = parameters else {
             return String::new();
         };
+        let upper = weighted(&[(*by_root, "*sqrt(upper)"), (*linear, "*upper")]);
+        let lower = weighted(&[(-lower_root, "*sqrt(lower)"), (-lower_linear, "*lower")]);
         format!(
-            "upper_dot = {pump:.5}*u - q - w, lower_dot = q + {share:.4}*w - {lower_root:.5}*sqrt(lower) - \
-             {lower_linear:.5}*lower, q = {by_root:.5}*sqrt(upper) + {linear:.5}*upper, w = overflow; upper < {rim:.4}, \
-             lower < {lower_rim:.4}"
+            "upper_dot = {pump:.5}*u - q - w, lower_dot = q + {share:.4}*w +{lower}, q ={upper}, w = overflow; \
+             upper < {rim:.4}, lower < {lower_rim:.4}"
         )
     }
 }
