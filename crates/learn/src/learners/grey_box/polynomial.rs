@@ -99,8 +99,8 @@ impl Law for Polynomial {
             linear.iter().zip(found.iter()).find(|(other, _)| **other == own).map(|(_, weight)| *weight)
         };
         // Terms that are not linear start from a weight of zero.
-        let parameters: Vec<f64> =
-            self.terms.iter().map(|term| of(term).unwrap_or(0.0) / self.size(*term)).collect();
+        let weight = |term: &[usize; 3]| of(term).unwrap_or(0.0) / self.size(*term);
+        let parameters: Vec<f64> = self.terms.iter().map(weight).collect();
         let cubic = |term: &[usize; 3]| of(term).is_some() || *term == [3, 0, 0];
         let first = self.terms.iter().enumerate().filter(|(_, term)| cubic(term)).map(|(at, _)| at).collect();
         vec![Guess { sizes: vec![1.0; self.terms.len()], parameters, hidden: 0.0, first }]
