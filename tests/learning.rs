@@ -270,3 +270,62 @@ fn absent_records_leave_their_rows_out_and_say_so() {
     assert!(result["problems"][0]["absent"].as_str().unwrap().contains("its rows are left out"));
     assert_eq!(result["results"].as_array().unwrap().len(), 0);
 }
+
+/// Rows of two files train, validate and test as the configuration states them, with the columns that each part names.
+#[test]
+fn stated_parts_are_learned_from_and_scored_apart() {
+    let scratch = tempfile::tempdir().unwrap();
+    let force = |at: usize| (0.07 * at as f64).sin() + (0.31 * at as f64).sin();
+    let mut state = [0.0_f64, 0.0];
+    let mut text = "u_v,y_v,other_v\n".to_owned();
+    for at in 0..1200 {
+        text.push_str(&format!("{},{},{}\n", force(at), state[0], 2.0 * state[0]));
+        for _ in 0..100 {
+            let rate = force(at) - 0.4 * state[1] - 9.0 * state[0];
+            state[1] += 1e-3 * rate;
+            state[0] += 1e-3 * state[1];
+        }
+    }
+    std::fs::write(scratch.path().join("record.csv"), text).unwrap();
+    let part = |name: &str, usage: &str, rows: [usize; 2], more: &str| {
+        let [from, to] = rows;
+        format!(
+            "[problem.made.part.{name}]\nuse = \"{usage}\"\nfile = \"record.csv\"\nfrom_row = {from}\nto_row = {to}\n{more}\n"
+        )
+    };
+    let head = "task = \"learn\"\n[learn]\nlearners = [\"sindy\"]\nbaselines = [\"persistence\"]\nablations = false\n[sindy]\n\
+                library = [\"theta\", \"theta_dot\", \"u\"]\n[problem.made]\nfolder = \".\"\nvalue = \"y_v\"\ninput = \"u_v\"\n\
+                unit = \"V\"\nsample_rate_hz = 10.0\ninit = 20\norigin = \"simulated\"\nsource = \"the study's own page\"\n";
+    let config = |end: usize| {
+        let published = "published = [\"others = 0.25\"]";
+        let parts = [
+            part("training", "training", [0, 600], ""),
+            part("choice", "validation", [600, 800], ""),
+            part("last", "test", [800, end], published),
+            part("twice", "test", [800, 1000], "value = \"other_v\""),
+        ];
+        let file = scratch.path().join(format!("study-{end}.toml"));
+        std::fs::write(&file, format!("{head}{}", parts.concat())).unwrap();
+        file.display().to_string()
+    };
+    let (code, result, _) = result(&[&config(1200)]);
+    assert_eq!(code, 0, "{result}");
+    let sindy = row(&result, "sindy");
+    let error = |part: usize| number(sindy, &format!("/test/parts/{part}/free_run_rmse"));
+    assert!(error(0) < 1e-2 && error(1) > 0.05, "{sindy}");
+    assert_eq!(result["problems"][0]["parts"][0]["published"][0]["name"], "others");
+    assert_eq!(result["problems"][0]["parts"][1]["samples"], 200);
+
+    let refused = trainer(&[&config(1300)]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("part.last: rows 800 to 1300") && message.contains("which has 1200"),
+        "{message}"
+    );
+
+    let absent = trainer(&[&config(1200), "problem.made.folder=nowhere"]);
+    let said =
+        format!("{}{}", String::from_utf8_lossy(&absent.stdout), String::from_utf8_lossy(&absent.stderr));
+    assert!(said.contains("Get it from the study's own page"), "{said}");
+}

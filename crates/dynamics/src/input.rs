@@ -17,9 +17,9 @@ pub enum Hold {
     Zero,
     /// Changes linearly to the next value.
     Linear,
-    /// Follows a smooth curve through its samples, as a sampled continuous signal does: cubic polynomials with the
-    /// slopes of the polynomial through the five nearest samples, whose error falls with the fourth power of the
-    /// sampling interval.
+    /// Follows a smooth curve through its samples, as a sampled continuous signal does: cubic polynomials whose slopes
+    /// are those of the polynomial through up to eight samples on either side. On even stamps these slopes approach
+    /// those of the band-limited signal. The error of the value falls with the fourth power of the sampling interval.
     #[serde(rename = "band-limited")]
     BandLimited,
 }
@@ -60,8 +60,7 @@ pub struct Input {
     values: Vec<f64>,
     hold: Hold,
     /// Polynomials of the value and of its rate from each time to the next one, of the fraction of that time which
-    /// has passed. Empty unless the input is thinned or
-    /// band-limited.
+    /// has passed. Empty unless the input is thinned or band-limited.
     curves: Vec<[Cubic; 2]>,
 }
 
@@ -107,8 +106,14 @@ const QUADRATURE: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
 ];
 
-/// Number of samples to either side of one whose polynomial tells the slope there.
-const BESIDE: usize = 2;
+/// Number of samples to either side of one whose polynomial tells the slope there, on even stamps.
+const BESIDE: usize = 8;
+
+/// The same on uneven stamps and at the ends, where the polynomial through many samples oscillates.
+const FEWEST_BESIDE: usize = 2;
+
+/// Largest ratio of two intervals between stamps that count as even.
+const EVEN: f64 = 1.5;
 
 /// Returns the cubic polynomials from each sample to the next, and their rates.
 fn smooth_curves(times: &[f64], values: &[f64]) -> Vec<[Cubic; 2]> {
@@ -127,9 +132,20 @@ fn smooth_curves(times: &[f64], values: &[f64]) -> Vec<[Cubic; 2]> {
     samples.iter().zip(samples.iter().skip(1)).map(curve).collect()
 }
 
-/// Returns the slope at a sample of the polynomial through it and the [`BESIDE`] samples on either side.
+/// Returns the number of samples on either side of one whose polynomial tells the slope there.
+fn reach(times: &[f64], at: usize) -> usize {
+    let reach = BESIDE.min(at).min(times.len().saturating_sub(at + 1));
+    // The range lies within the times.
+    let near = times.get(at - reach..=at + reach).unwrap_or_default();
+    let intervals = near.iter().zip(near.iter().skip(1)).map(|(before, after)| after - before);
+    let (least, most) = intervals.fold((f64::INFINITY, 0.0_f64), |(a, b), own| (a.min(own), b.max(own)));
+    if reach > FEWEST_BESIDE && most <= EVEN * least { reach } else { FEWEST_BESIDE }
+}
+
+/// Returns the slope at a sample of the polynomial through it and the samples within [`reach`].
 fn slope_at(times: &[f64], values: &[f64], at: usize) -> f64 {
-    let near = at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(times.len());
+    let reach = reach(times, at);
+    let near = at.saturating_sub(reach)..(at + reach + 1).min(times.len());
     let own = || near.clone().filter_map(|index| Some((index, *times.get(index)?, *values.get(index)?)));
     let Some((_, here, value)) = own().find(|(index, ..)| *index == at) else { return 0.0 };
     let beside = || own().filter(|(index, ..)| *index != at);
@@ -151,6 +167,14 @@ impl Input {
     /// Returns [`DynamicsError::BadInput`] unless there is at least one sample, as many values as times, all
     /// are finite, and the times strictly increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, hold: Hold) -> Result<Self, DynamicsError> {
+        let input = Self::uncurved(times, values, hold)?;
+        let is_smooth = hold == Hold::BandLimited;
+        let curves = if is_smooth { smooth_curves(&input.times, &input.values) } else { Vec::new() };
+        Ok(Self { curves, ..input })
+    }
+
+    /// Checks the samples of an input, as [`Self::new`] does, and leaves its curves out.
+    fn uncurved(times: Vec<f64>, values: Vec<f64>, hold: Hold) -> Result<Self, DynamicsError> {
         let bad = |what, index, value, remedy| Err(DynamicsError::BadInput { what, index, value, remedy });
         if times.is_empty() || times.len() != values.len() {
             return bad(
@@ -170,8 +194,7 @@ impl Input {
         if let Some((index, (_, &time))) = pairs.enumerate().find(|(_, (before, after))| after <= before) {
             return bad("time", index + 1, time, "times must strictly increase");
         }
-        let curves = if hold == Hold::BandLimited { smooth_curves(&times, &values) } else { Vec::new() };
-        Ok(Self { times, values, hold, curves })
+        Ok(Self { times, values, hold, curves: Vec::new() })
     }
 
     /// Returns the sample times in seconds, increasing; as many as [`Self::values`].
@@ -205,12 +228,26 @@ impl Input {
         self.piece(self.piece_index(time)).at(time)
     }
 
+    /// Returns the coefficients of the polynomial that the input follows from a sample to the next one: of 1, x, x² and
+    /// x³, where x is the time since the sample in seconds. After the last sample, the input is constant.
+    ///
+    /// ```
+    /// use dynamics::{Hold, Input};
+    /// let input = Input::new(vec![0.0, 0.5], vec![2.0, 4.0], Hold::Linear)?;
+    /// assert_eq!(input.cubic(0), [2.0, 4.0, 0.0, 0.0]);
+    /// # Ok::<(), dynamics::DynamicsError>(())
+    /// ```
+    #[must_use]
+    pub fn cubic(&self, sample: usize) -> [f64; 4] {
+        self.piece(sample + 1).terms
+    }
+
     /// Returns the input at other times: as many, in seconds.
     ///
     /// # Errors
     /// Returns [`DynamicsError::BadInput`] for times that [`Self::new`] would refuse.
     pub fn with_times(&self, times: Vec<f64>) -> Result<Self, DynamicsError> {
-        let followed = Self::new(times, self.values.clone(), self.hold)?;
+        let followed = Self::uncurved(times, self.values.clone(), self.hold)?;
         Ok(Self { curves: self.curves.clone(), ..followed })
     }
 
@@ -221,7 +258,7 @@ impl Input {
     pub fn scaled(&self, factor: f64) -> Result<Self, DynamicsError> {
         let values = self.values.iter().map(|value| value * factor).collect();
         let curves = self.curves.iter().map(|curve| curve.map(|own| own.map(|term| term * factor))).collect();
-        Ok(Self { curves, ..Self::new(self.times.clone(), values, self.hold)? })
+        Ok(Self { curves, ..Self::uncurved(self.times.clone(), values, self.hold)? })
     }
 
     /// Returns the input with one cubic polynomial in place of every `count` samples. A `count` of 0 or 1
@@ -366,6 +403,23 @@ mod tests {
         assert!((12.0..20.0).contains(&(value / finer_value)), "{value} {finer_value}");
         assert!((6.0..20.0).contains(&(rate / finer_rate)), "{rate} {finer_rate}");
         assert!(finer_value < 5e-6 && finer_rate < 1e-3, "{finer_value} {finer_rate}");
+    }
+
+    /// At three samples per period, the slopes of five samples are off by a third.
+    #[test]
+    fn a_band_limited_input_follows_a_sine_of_few_samples() {
+        let rate = std::f64::consts::TAU / 3.0;
+        let of = |at: usize| (rate * at as f64 + 0.4).sin();
+        let input = |stamp: fn(usize) -> f64| {
+            let times = (0..60).map(stamp).collect();
+            Input::new(times, (0..60).map(of).collect(), Hold::BandLimited).unwrap()
+        };
+        let slope = rate * (rate * 30.0 + 0.4).cos();
+        let [_, even, ..] = input(|at| at as f64).cubic(30);
+        assert!((even / slope - 1.0).abs() < 0.05, "{even} {slope}");
+        // A gap beside the sample, where a polynomial through many samples would oscillate.
+        let [_, beside_a_gap, ..] = input(|at| at as f64 + if at > 31 { 9.0 } else { 0.0 }).cubic(30);
+        assert!((beside_a_gap / slope - 1.0).abs() < 1.0, "{beside_a_gap} {slope}");
     }
 
     /// A held input changes by its steps, which a digital controller divides by the time between them.

@@ -141,6 +141,13 @@ impl DataSettings {
         }
     }
 
+    /// Returns the same settings with another observed column and another input, where they are stated.
+    #[must_use]
+    pub fn with_columns(&self, value: Option<&String>, input: Option<&String>) -> Self {
+        let own = self.clone();
+        Self { value: value.cloned().or(own.value), input: input.cloned().or(own.input), ..self.clone() }
+    }
+
     /// Returns what the configuration states about the record: origin, sample rate and number of samples.
     #[must_use]
     pub fn statements(&self) -> Statements {

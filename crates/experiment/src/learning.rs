@@ -2,6 +2,7 @@
 
 use crate::experiment::DataSettings;
 use crate::json_schema::{asking_for_task, put};
+use crate::parts::{self, PART, StatedPart};
 use crate::prediction::all_known;
 use crate::schema::{DATA, TOP};
 use dynamics::Hold;
@@ -78,6 +79,15 @@ pub enum LearnSource {
         /// Options for reading the files.
         reading: Box<DataSettings>,
     },
+    /// Ranges of rows in the files of a folder, with their uses.
+    Parts {
+        /// The folder.
+        folder: String,
+        /// The parts, in the order of the document.
+        parts: Vec<StatedPart>,
+        /// Options for reading the files.
+        reading: Box<DataSettings>,
+    },
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -88,6 +98,7 @@ struct SplitKeys {
     test_share: f64,
     validation_share: f64,
     hold: HoldKey,
+    init: Option<usize>,
     warm_up_s: Option<f64>,
     period_s: Option<f64>,
     noise: Option<f64>,
@@ -100,6 +111,8 @@ enum HoldKey {
     Auto,
     Zero,
     Linear,
+    #[serde(rename = "band-limited")]
+    BandLimited,
 }
 
 impl HoldKey {
@@ -108,16 +121,19 @@ impl HoldKey {
             Self::Auto => None,
             Self::Zero => Some(Hold::Zero),
             Self::Linear => Some(Hold::Linear),
+            Self::BandLimited => Some(Hold::BandLimited),
         }
     }
 }
 
 impl LearningProblem {
-    /// Returns the options for making the data set that the configuration states. The caller supplies the
-    /// nominal simulator and the unit.
+    /// Returns the options for making the data set that the configuration states, of records with a sample rate in
+    /// Hz. The caller supplies the nominal simulator and the unit.
     #[must_use]
-    pub fn making(&self) -> Making {
+    pub fn making(&self, rate_hz: f64) -> Making {
         let keys = &self.split;
+        // Half an interval more than the last sample, so that rounding leaves none out.
+        let of_samples = |samples: usize| (samples as f64 - 0.5) / rate_hz;
         Making {
             split: Split {
                 kind: keys.split,
@@ -129,7 +145,7 @@ impl LearningProblem {
             unit: String::new(),
             nominal: None,
             hold: keys.hold.stated(),
-            warm_up_s: keys.warm_up_s,
+            warm_up_s: keys.init.map(of_samples).or(keys.warm_up_s),
             period_s: keys.period_s,
             noise: keys.noise,
         }
@@ -213,9 +229,14 @@ const PROBLEM: &[Field] = &[
         "Share at the end of a training part that is used to choose among models if no whole \
                 record is.",
     ),
-    Field::new("hold", Kind::Choice(&["auto", "zero", "linear"]), Default::Text("auto")).meaning(
-        "Input between samples: it keeps its value, or goes straight to the next; auto: \
-                whichever a law of all terms follows better.",
+    Field::new("hold", Kind::Choice(&["auto", "zero", "linear", "band-limited"]), Default::Text("auto"))
+        .meaning(
+            "Input between samples: it keeps its value, goes straight to the next, or follows a smooth curve; auto: \
+                    whichever a law of all terms follows best.",
+        ),
+    Field::new("init", Kind::Integer { min: 5, max: 1_000_000 }, Default::Absent).unit("samples").meaning(
+        "Number of samples at the start of a part from which its start state is found, and which do not count; \
+                replaces warm_up_s.",
     ),
     Field::new("warm_up_s", Kind::Float { min: 1e-9, max: 1e9 }, Default::Absent)
         .unit("s")
@@ -256,11 +277,13 @@ pub fn resolve_learning(document: &Document, learners: &[Entry]) -> Result<Learn
         });
     }
     let names: Vec<String> = ids.iter().map(|id| format!("problem.{id}")).collect();
+    let parts: Vec<String> = names.iter().flat_map(|name| parts::sections(document, name)).collect();
     let (top_fields, problem) = (top(), problem_fields());
     let mut sections =
         vec![Section { name: "", fields: &top_fields }, Section { name: "learn", fields: LEARN }];
     sections.extend(learners.iter().map(|entry| Section { name: entry.id, fields: entry.fields }));
     sections.extend(names.iter().map(|name| Section { name, fields: &problem }));
+    sections.extend(parts.iter().map(|name| Section { name, fields: PART }));
     let resolved = Resolved::new(document, &sections)?;
 
     let top: Top = resolved.section("")?;
@@ -297,18 +320,34 @@ fn read(
     section: &str,
 ) -> Result<LearningProblem, SettingsError> {
     let head: Head = resolved.section(section)?;
-    let source = match (head.simulation, head.folder.zip(head.records)) {
-        (Some(simulation), None) => LearnSource::Simulation(simulation),
-        (None, Some((folder, records))) => {
+    let parts = parts::read(document, resolved, section)?;
+    if head.remove_mean && !parts.is_empty() {
+        let setting = resolved.setting(&format!("{section}.remove_mean"))?;
+        return Err(SettingsError::BadValue {
+            origin: setting.origin.clone(),
+            key: setting.key(),
+            found: "true".to_owned(),
+            expected: "false beside stated parts: the mean of a file is that of its test rows too".to_owned(),
+            unit: String::new(),
+        });
+    }
+    let source = match (head.simulation, head.folder, head.records) {
+        (Some(simulation), _, None) if parts.is_empty() => LearnSource::Simulation(simulation),
+        (None, Some(folder), Some(records)) if parts.is_empty() => {
             let reading = Box::new(reading(resolved, section)?);
             LearnSource::Files { folder, records, reading }
+        }
+        (None, Some(folder), None) if !parts.is_empty() => {
+            let reading = Box::new(reading(resolved, section)?);
+            LearnSource::Parts { folder, parts, reading }
         }
         _ => {
             return Err(SettingsError::Missing {
                 file: document.file().to_owned(),
                 key: format!("{section}.simulation"),
                 meaning: "A data set comes from a simulation or from files.".to_owned(),
-                expected: "either simulation, or folder and records".to_owned(),
+                expected: "either simulation, or folder and records, or folder and sections .part.PART"
+                    .to_owned(),
             });
         }
     };
@@ -345,7 +384,10 @@ pub fn learn_schema(learners: &[Entry]) -> Value {
     sections.extend(learners.iter().map(|entry| Section { name: entry.id, fields: entry.fields }));
     let mut root = json_schema::tables(&sections);
     json_schema::insert(&mut root, "", "task", json!({ "const": TASK }));
-    let problems = json!({ "type": "object", "additionalProperties": json_schema::table(&problem) });
+    let mut each = json_schema::table(&problem);
+    let part = json!({ "type": "object", "additionalProperties": json_schema::table(PART) });
+    json_schema::insert(&mut each, "", "part", part);
+    let problems = json!({ "type": "object", "additionalProperties": each });
     json_schema::insert(&mut root, "", "problem", problems);
     let mut required = asking_for_task(json_schema::requirements(&sections));
     json_schema::require(&mut required, "", "problem");

@@ -11,6 +11,8 @@ mod json_schema;
 #[cfg(not(target_arch = "wasm32"))]
 mod learning;
 mod nominal;
+#[cfg(not(target_arch = "wasm32"))]
+mod parts;
 mod pipelines;
 mod prediction;
 mod schema;
@@ -32,6 +34,8 @@ pub use learning::{
 pub use nominal::{
     KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, Servo, StatedNominal, resolve_nominal,
 };
+#[cfg(not(target_arch = "wasm32"))]
+pub use parts::{PartUse, Published, StatedPart};
 pub use pipelines::{EnvelopeSettings, Pipeline};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,

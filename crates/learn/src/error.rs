@@ -7,6 +7,15 @@ use thiserror::Error;
 /// Reason why a data set is refused, or why a learner or model gave no answer.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LearnError {
+    /// No stretch is stated for a use.
+    #[error(
+        "there is no {part} part; state one with use = \"{part}\" in a section problem.NAME.part.PART, or split \
+         records without such sections"
+    )]
+    NoPart {
+        /// `"training"`, `"validation"` or `"test"`.
+        part: &'static str,
+    },
     /// There is no record.
     #[error("there is no record to learn from; name at least two, or one that is split by time")]
     NoRecords,

@@ -29,7 +29,7 @@ mod testing;
 pub mod training;
 
 pub use error::LearnError;
-pub use hold::data_set;
+pub use hold::{data_set, data_set_of_parts};
 pub use learner::{Context, Entry, Fitted, Kind, Learner, Step};
 pub use model::{Ahead, Coefficient, Model, Past, Place, Predicted, Torque};
 pub use stored::{Stored, Tensor};

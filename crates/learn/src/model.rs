@@ -79,7 +79,7 @@ impl Coefficient {
 
 /// Model of the motion. The same arguments give the same bits.
 pub trait Model: Send + Sync {
-    /// Predicts from a past without further observations. The past has at least eight samples.
+    /// Predicts from a past without further observations. The past has at least [`LEAST_PAST`](crate::data::LEAST_PAST) samples.
     ///
     /// # Errors
     /// [`LearnError::Diverged`] if the motion diverges, other errors if the model cannot run.

@@ -59,7 +59,7 @@ pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};
 pub use statistics::{extremes, median, noise_level};
 pub use unit::{TimeUnit, Unit};
-pub use words::{counted, two_digits};
+pub use words::{counted, prefixed, two_digits};
 
 /// Smallest number of samples of a record.
 pub const FEWEST_SAMPLES: usize = 8;

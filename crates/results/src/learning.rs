@@ -65,8 +65,11 @@ pub struct LearnProblem {
     pub noise: f64,
     /// Mean length of a test stretch after its warm-up, in seconds.
     pub test_s: f64,
-    /// Course of the input between its samples: `"zero"` (held constant) or `"linear"`; `None` without an
-    /// input.
+    /// Stated test parts, with what others published for them; empty for records that are split.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<LearnPart>,
+    /// Course of the input between its samples: `"zero"` (held constant), `"linear"` or `"band-limited"`; `None`
+    /// without an input.
     #[serde(default)]
     pub input_hold: Option<String>,
     /// Records with missing cells and the treatment of these cells, as sentences.
@@ -79,8 +82,41 @@ impl LearnProblem {
     #[must_use]
     pub fn input_between_samples(&self) -> Option<&'static str> {
         let hold = self.input_hold.as_deref()?;
-        Some(if hold == "linear" { "straight to the next" } else { "kept" })
+        Some(match hold {
+            "linear" => "straight to the next",
+            "band-limited" => "a smooth curve",
+            _ => "kept",
+        })
     }
+}
+
+/// Stated test part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LearnPart {
+    /// Name in the configuration.
+    pub id: String,
+    /// Number of samples, those of the warm-up included.
+    pub samples: usize,
+    /// Errors that others published, as the configuration states them.
+    pub published: Vec<LearnPublished>,
+}
+
+/// Error of a method that others published.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LearnPublished {
+    /// Name of the method.
+    pub name: String,
+    /// Root mean square error of the free run, in the unit of the position.
+    pub free_run_rmse: f64,
+}
+
+/// Error on one stated test part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LearnPartError {
+    /// Name of the part.
+    pub part: String,
+    /// Root mean square error of the free run, in the unit of the position; `None` if it failed.
+    pub free_run_rmse: Option<f64>,
 }
 
 /// Result of one method on one data set.
@@ -193,6 +229,9 @@ pub struct LearnTest {
     pub one_step_rmse: Option<f64>,
     /// Share of observations inside the stated 95 % band.
     pub coverage_95: Option<f64>,
+    /// Errors on the stated test parts; empty for records that are split.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<LearnPartError>,
 }
 
 /// A coefficient of a learned law.

@@ -56,8 +56,9 @@ pub use joints::{
 };
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
-    LearnTest, LearnTorqueRow, LearnTraceRow, LearnValidation,
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
+    LearnPublished, LearnResult, LearnRow, LearnSeriesRow, LearnTest, LearnTorqueRow, LearnTraceRow,
+    LearnValidation,
 };
 pub use method::{Ablation, Estimand, Family, Reached};
 pub use modes::{ModeRow, Resonance};

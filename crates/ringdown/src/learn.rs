@@ -168,16 +168,19 @@ fn data_set(
         let clock = record.clock()?;
         trajectories.push(trajectory(problem, &name, &record.loaded.record, &clock.times_s)?);
     }
+    // Without a record there is no data set, which is refused below.
+    let rate_hz = trajectories.first().map_or(0.0, Trajectory::rate_hz);
     let making = Making {
         unit: first.map_or("rad", |(_, unit)| unit).to_owned(),
         nominal: nominal.map(|nominal| nominal.stated.simulator.clone()),
-        ..problem.making()
+        ..problem.making(rate_hz)
     };
     Ok(Ready {
         data: learn::data_set(&trajectories, making)?,
         records: trajectories.len(),
         missing,
         truth: None,
+        parts: Vec::new(),
     })
 }
 

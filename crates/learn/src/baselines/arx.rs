@@ -4,7 +4,7 @@
 //! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of the one-step error (Ljung, System Identification, 2nd
 //! ed. 1999, section 4.2). The order is the one whose free run has the smallest validation error.
 
-use crate::data::{DataSet, span_s};
+use crate::data::{DataSet, LEAST_PAST, span_s};
 use crate::judge::validation_error;
 use crate::linear::least_squares;
 use crate::{Ahead, LearnError, Model, Past, Predicted};
@@ -46,7 +46,8 @@ impl Arx {
     /// As [`Self::fit`].
     pub(crate) fn validated(data: &DataSet, ridges: &[f64]) -> Result<Self, LearnError> {
         let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min();
-        let orders = ORDERS.iter().filter(|order| **order < shortest.map_or(8, |shortest| shortest.max(8)));
+        let most = shortest.map_or(LEAST_PAST, |shortest| shortest.max(LEAST_PAST));
+        let orders = ORDERS.iter().filter(|order| **order < most);
         let fitted = orders
             .flat_map(|&order| ridges.iter().map(move |&ridge| (order, ridge)))
             .filter_map(|(order, ridge)| of(data, order, ridge));

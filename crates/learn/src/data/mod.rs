@@ -10,10 +10,10 @@ mod trajectory;
 mod windows;
 
 pub use period::{noise_floor, period};
-pub use set::{DataSet, Making, Scale};
+pub use set::{DataSet, LEAST_PAST, Making, Scale};
 pub use smoothing::{LocalState, local_states};
 pub(crate) use smoothing::{interpolated, local_state};
-pub use split::{Split, SplitKind};
+pub use split::{Parts, Split, SplitKind};
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::span_s;
 pub use windows::{Window, windows};

@@ -2,7 +2,7 @@
 
 use super::period::{noise_floor, period};
 use super::split::split;
-use super::{Split, Trajectory, local_states};
+use super::{Parts, Split, Trajectory, local_states};
 use crate::LearnError;
 use dynamics::{Hold, NominalSimulator};
 use serde::{Deserialize, Serialize};
@@ -70,6 +70,9 @@ pub struct Making {
     pub noise: Option<f64>,
 }
 
+/// Fewest samples of a past.
+pub const LEAST_PAST: usize = 5;
+
 /// Largest ratio of sample rates within a set.
 const RATES: f64 = 1.05;
 
@@ -79,9 +82,21 @@ impl DataSet {
     /// # Errors
     /// [`LearnError`] for a set that cannot be learned from or scored on; the message states the remedy.
     pub fn new(records: &[Trajectory], making: Making) -> Result<Self, LearnError> {
-        check_inputs(records)?;
-        check_rates(records)?;
-        let parts = split(records, &making.split)?;
+        Self::of_parts(split(records, &making.split)?, making)
+    }
+
+    /// Checks parts that are stated, rather than split as `making.split` says.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`LearnError::NoPart`] if there is no part to train on, to validate with, or to test on.
+    pub fn of_parts(parts: Parts, making: Making) -> Result<Self, LearnError> {
+        let uses = [("training", &parts.train), ("validation", &parts.validation), ("test", &parts.test)];
+        if let Some((part, _)) = uses.into_iter().find(|(_, own)| own.is_empty()) {
+            return Err(LearnError::NoPart { part });
+        }
+        let all = [parts.train.as_slice(), &parts.validation, &parts.test].concat();
+        check_inputs(&all)?;
+        check_rates(&all)?;
         let period_s = match making.period_s {
             Some(period) => period,
             None => period(&parts.train).ok_or(LearnError::NoPeriod)?,
@@ -114,6 +129,19 @@ impl DataSet {
     #[must_use]
     pub fn is_driven(&self) -> bool {
         self.train.iter().any(|part| part.input().is_some())
+    }
+
+    /// Returns the same set without its test part, as learners get it.
+    #[must_use]
+    pub fn without_test(&self) -> Self {
+        Self { test: Vec::new(), ..self.clone() }
+    }
+
+    /// Returns the number of samples at the start of a part from which a model predicts the rest.
+    #[must_use]
+    pub fn warm_up_samples(&self, part: &Trajectory) -> usize {
+        let most = part.len().saturating_sub(1).max(LEAST_PAST);
+        part.samples_within(self.warm_up_s).clamp(LEAST_PAST, most)
     }
 
     /// Returns the number of samples in the training part.

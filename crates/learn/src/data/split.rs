@@ -34,10 +34,14 @@ pub struct Split {
 }
 
 /// Training, validation and test parts.
-pub(super) struct Parts {
-    pub(super) train: Vec<Trajectory>,
-    pub(super) validation: Vec<Trajectory>,
-    pub(super) test: Vec<Trajectory>,
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Parts {
+    /// Stretches that models are fitted to.
+    pub train: Vec<Trajectory>,
+    /// Stretches that choose among models.
+    pub validation: Vec<Trajectory>,
+    /// Stretches that score models.
+    pub test: Vec<Trajectory>,
 }
 
 /// Splits records; every part gets at least one trajectory.

@@ -11,7 +11,7 @@
 use super::field::{Field, Slope};
 use super::start::State;
 use crate::{LearnError, Place};
-use dynamics::Hold;
+use dynamics::{Hold, Input};
 
 /// Number of events within a sampling interval beyond which the motion counts as at rest.
 const MOST_EVENTS: usize = 6;
@@ -49,6 +49,23 @@ struct Column {
     velocity: f64,
 }
 
+/// Input over a sampling interval: coefficients of 1, x, x² and x³, where x is the time in seconds.
+#[derive(Clone, Copy)]
+struct Course([f64; 4]);
+
+impl Course {
+    fn at(self, x: f64) -> f64 {
+        let Self([a, b, c, d]) = self;
+        a + x * (b + x * (c + x * d))
+    }
+
+    /// Returns the same input with times counted from `x`.
+    fn from(self, x: f64) -> Self {
+        let Self([_, b, c, d]) = self;
+        Self([self.at(x), b + x * (2.0 * c + x * 3.0 * d), c + x * 3.0 * d, d])
+    }
+}
+
 /// State of an integration in progress.
 struct Going<'a> {
     run: Run<'a>,
@@ -64,7 +81,8 @@ impl Run<'_> {
     /// has one value per time.
     ///
     /// # Errors
-    /// [`LearnError::Diverged`] if the position exceeds the bound or the velocity is not finite.
+    /// [`LearnError::Diverged`] if the position exceeds the bound or the velocity is not finite,
+    /// [`LearnError::Dynamics`] for an input of another length.
     pub fn motion(
         &self,
         start: State,
@@ -90,9 +108,12 @@ impl Run<'_> {
         };
         let mut motion = Motion { positions: vec![start.position], ..Motion::default() };
         going.note(&mut motion);
-        let inputs = input.map_or_else(|| vec![0.0; times_s.len()], <[f64]>::to_vec);
-        for (&[from, to], &[before, after]) in times_s.array_windows().zip(inputs.array_windows()) {
-            going.interval(to - from, before, if self.hold == Hold::Zero { before } else { after });
+        let given = |input: &[f64]| Input::new(times_s.to_vec(), input.to_vec(), self.hold);
+        let input = input.filter(|input| !input.is_empty()).map(given).transpose()?;
+        // Without an input nothing drives the system.
+        let course = |number: usize| Course(input.as_ref().map_or([0.0; 4], |input| input.cubic(number)));
+        for (number, &[from, to]) in times_s.array_windows().enumerate() {
+            going.interval(to - from, course(number));
             if !(going.state.position.abs() <= self.bound && going.state.velocity.is_finite()) {
                 return Err(LearnError::Diverged { time_s: to - times_s[0], bound: self.bound });
             }
@@ -109,26 +130,25 @@ impl Going<'_> {
         motion.sensitivity.extend(self.columns.iter().map(|column| column.position));
     }
 
-    /// Advances over a sampling interval; the input varies linearly from `input` to `end`.
-    fn interval(&mut self, length: f64, input: f64, end: f64) {
+    /// Advances over a sampling interval.
+    fn interval(&mut self, length: f64, input: Course) {
         let steps = (length / self.run.longest_step_s - 1e-9).ceil().max(1.0);
-        let (step, slope) = (length / steps, (end - input) / length);
+        let step = length / steps;
         let mut events = 0;
         for number in 0..steps as usize {
             let (mut done, begin) = (0.0, number as f64 * step);
             while step - done > 1e-12 * step {
-                let now = input + slope * (begin + done);
-                if self.resting && !self.sets_off(now) {
+                let now = input.from(begin + done);
+                if self.resting && !self.sets_off(now.at(0.0)) {
                     break;
                 }
                 let rest = step - done;
-                let taken =
-                    if self.run.field.is_directed() { self.until_reversal(rest, now, slope) } else { None };
-                self.step(taken.unwrap_or(rest), now, slope);
+                let taken = if self.run.field.is_directed() { self.until_reversal(rest, now) } else { None };
+                self.step(taken.unwrap_or(rest), now);
                 done += taken.unwrap_or(rest);
                 if taken.is_some() {
                     events += 1;
-                    self.reverse(input + slope * (begin + done));
+                    self.reverse(input.at(begin + done));
                     if events > MOST_EVENTS {
                         self.rest();
                     }
@@ -178,8 +198,8 @@ impl Going<'_> {
 
     /// Returns the length of the step that ends at a reversal, found by the Illinois method on the velocity;
     /// `None` if there is none within `step`.
-    fn until_reversal(&self, step: f64, input: f64, slope: f64) -> Option<f64> {
-        let velocity = |length: f64| self.plain(length, input, slope).velocity * self.direction;
+    fn until_reversal(&self, step: f64, input: Course) -> Option<f64> {
+        let velocity = |length: f64| self.plain(length, input).velocity * self.direction;
         let (mut low, mut high) = (0.0, step);
         let (mut at_low, mut at_high) = (self.state.velocity * self.direction, velocity(step));
         if at_high >= 0.0 {
@@ -211,9 +231,9 @@ impl Going<'_> {
     }
 
     /// Takes one Runge–Kutta step of the state alone.
-    fn plain(&self, h: f64, input: f64, slope: f64) -> State {
+    fn plain(&self, h: f64, input: Course) -> State {
         let State { position: x, velocity: v } = self.state;
-        let force = |x: f64, v: f64, at: f64| self.acceleration(x, v, self.direction, input + slope * at);
+        let force = |x: f64, v: f64, at: f64| self.acceleration(x, v, self.direction, input.at(at));
         let half = 0.5 * h;
         let a1 = force(x, v, 0.0);
         let (x2, v2) = (x + half * v, v + half * a1);
@@ -229,9 +249,9 @@ impl Going<'_> {
     }
 
     /// Takes one Runge–Kutta step of the state and its sensitivities.
-    fn step(&mut self, h: f64, input: f64, slope: f64) {
+    fn step(&mut self, h: f64, input: Course) {
         if self.columns.is_empty() {
-            self.state = self.plain(h, input, slope);
+            self.state = self.plain(h, input);
             return;
         }
         let State { position: x, velocity: v } = self.state;
@@ -239,7 +259,7 @@ impl Going<'_> {
         let half = 0.5 * h;
         let [s1, s2, s3, s4] = &mut self.slopes;
         let force = |x: f64, v: f64, at: f64, slope_of: &mut Slope| {
-            let place = Place { position: x, velocity: v, direction, input: input + slope * at };
+            let place = Place { position: x, velocity: v, direction, input: input.at(at) };
             field.sloped(weights, &place, slope_of)
         };
         let a1 = force(x, v, 0.0, s1);

@@ -3,5 +3,5 @@
 mod score;
 mod truth;
 
-pub use score::{Run, Score, runs, runs_on_noise, score, score_of_runs, validation_error};
+pub use score::{Run, Score, run_error, runs, runs_on_noise, score, score_of_runs, validation_error};
 pub use truth::{CoefficientError, Truth};

@@ -56,17 +56,11 @@ fn ahead(part: &Trajectory, from: usize, to: usize) -> Ahead<'_> {
     Ahead { times_s: &part.times_s()[from..to], input: part.input().map(|input| &input[from..to]) }
 }
 
-/// Returns the number of samples of a part that a prediction starts from; at most all.
-fn warm_up(part: &Trajectory, data: &DataSet) -> usize {
-    let most = part.len().saturating_sub(1).max(8);
-    part.samples_within(data.warm_up_s).clamp(8, most).min(part.len())
-}
-
 /// Runs a model freely over each test trajectory from its warm-up, with bands if the model states them.
 #[must_use]
 pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
     let run = |part: &Trajectory| {
-        let (now, end) = (warm_up(part, data), part.len());
+        let (now, end) = (data.warm_up_samples(part), part.len());
         Run {
             name: part.name().to_owned(),
             times_s: ahead(part, now, end).times_s.to_vec(),
@@ -84,7 +78,7 @@ pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
 #[must_use]
 pub fn runs_on_noise(model: &dyn Model, data: &DataSet, seed: &Seed) -> Vec<Run> {
     let run = |(number, part): (usize, &Trajectory)| {
-        let (now, end) = (warm_up(part, data), part.len());
+        let (now, end) = (data.warm_up_samples(part), part.len());
         let seed = seed.child("noise for input").child(&number.to_string());
         let values = noise_like(part.values(), &seed.child("position"));
         let input = part.input().map(|input| noise_like(input, &seed.child("input")));
@@ -118,13 +112,21 @@ fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
     values.iter().map(&mut draw).collect()
 }
 
+/// Returns the root mean square error of one free run; infinite if the run failed.
+#[must_use]
+pub fn run_error(run: &Run) -> f64 {
+    let Ok(predicted) = &run.predicted else { return f64::INFINITY };
+    let squares = run.observed.iter().zip(&predicted.values).map(|(a, b)| (a - b).powi(2));
+    finite((squares.sum::<f64>() / run.observed.len().max(1) as f64).sqrt())
+}
+
 /// Returns the root mean square error of free runs over the validation part, without bands; infinite if a run
 /// fails.
 #[must_use]
 pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
     let (mut sum, mut count) = (0.0, 0_usize);
     for part in &data.validation {
-        let (now, end) = (warm_up(part, data), part.len());
+        let (now, end) = (data.warm_up_samples(part), part.len());
         let Ok(found) = model.free_run(&past(part, 0, now), &ahead(part, now, end)) else {
             return f64::INFINITY;
         };
@@ -206,7 +208,7 @@ fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
 fn one_step(model: &dyn Model, data: &DataSet) -> f64 {
     let (mut sum, mut count) = (0.0, 0_usize);
     for part in &data.test {
-        let length = warm_up(part, data);
+        let length = data.warm_up_samples(part);
         let places = part.len().saturating_sub(length);
         for now in (length..part.len()).step_by((places / STEPS).max(1)) {
             let found = model.free_run(&past(part, now - length, now), &ahead(part, now, now + 1));

@@ -30,7 +30,7 @@ pub const ENTRY: Entry = Entry {
     restore: restore::<Lstm>,
 };
 
-const FIELDS: [Field; 12] =
+const FIELDS: [Field; 13] =
     with_shared([count("units", [1, 4_096], 24, "Units of the hidden state, and of the cell.")]);
 
 /// Settings of the architecture.

@@ -2,6 +2,7 @@
 
 pub mod bayesian;
 pub mod gaussian_process;
+pub mod grey_box;
 pub mod library;
 pub mod lstm;
 pub mod neural_ode;
@@ -25,6 +26,7 @@ pub static LEARNERS: &[Entry] = &[
     bayesian::ENTRY,
     pinn::ENTRY,
     symbolic::ENTRY,
+    grey_box::ENTRY,
     lstm::ENTRY,
     transformer::ENTRY,
     temporal_convolution::ENTRY,

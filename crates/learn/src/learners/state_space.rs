@@ -35,7 +35,7 @@ pub const ENTRY: Entry = Entry {
     restore: restore::<StateSpace>,
 };
 
-const FIELDS: [Field; 14] = with_shared([
+const FIELDS: [Field; 15] = with_shared([
     count("channels", [1, 1_024], 16, "Channels of every layer, each with a state space of its own."),
     count("states", [1, 1_024], 6, "Complex states of a channel."),
     count("layers", [1, 64], 2, "Layers, one after the other."),

@@ -29,7 +29,7 @@ pub const ENTRY: Entry = Entry {
     restore: restore::<TemporalConvolution>,
 };
 
-const FIELDS: [Field; 13] = with_shared([
+const FIELDS: [Field; 14] = with_shared([
     count("channels", [1, 4_096], 16, "Channels of every layer."),
     count(
         "layers",

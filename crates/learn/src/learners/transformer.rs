@@ -30,7 +30,7 @@ pub const ENTRY: Entry = Entry {
     restore: restore::<Transformer>,
 };
 
-const FIELDS: [Field; 14] = with_shared([
+const FIELDS: [Field; 15] = with_shared([
     count("layers", [1, 64], 2, "Layers of attention."),
     count("heads", [1, 64], 2, "Heads of each layer."),
     count(

@@ -48,7 +48,7 @@ impl Learner for WeakSindy {
 }
 
 /// Largest number of windows of a regression.
-const MOST_WINDOWS: usize = 4_000;
+const MOST_WINDOWS: usize = 16_000;
 
 /// Exponent of the test functions (1 − s²)⁴: smooth enough that sums over samples approximate integrals.
 pub(super) const EXPONENT: i32 = 4;

@@ -11,6 +11,8 @@ const OWN: Field = Field::new("", Value::Text, Default::Absent);
 pub struct Settings {
     /// Largest number of samples per period.
     pub samples_per_period: usize,
+    /// Number of samples of the past that a model reads; `None` for those of the warm-up.
+    pub past: Option<usize>,
     /// Length of a block in periods.
     pub block_periods: f64,
     /// Number of blocks in a free run during training.
@@ -33,7 +35,7 @@ pub struct Settings {
     pub precision: Precision,
 }
 
-const SHARED: [Field; 11] = [
+const SHARED: [Field; 12] = [
     OWN.key("samples_per_period")
         .kind(Value::Integer { min: 8, max: 1_000 })
         .default(Default::Integer(48))
@@ -41,6 +43,10 @@ const SHARED: [Field; 11] = [
             "Most samples of a typical period that the model sees; records sampled faster are \
                 thinned out.",
         ),
+    OWN.key("past").kind(Value::Integer { min: 5, max: 96 }).unit("samples").meaning(
+        "Samples of the past that the model reads, thinned out as above; where a prediction starts from fewer, the \
+                first of these is repeated before them. Left open, those of the warm-up.",
+    ),
     OWN.key("block_periods")
         .kind(Value::Float { min: 0.01, max: 100.0 })
         .default(Default::Float(0.5))
@@ -99,7 +105,7 @@ pub const fn count(key: &'static str, [min, max]: [i64; 2], default: i64, meanin
     OWN.key(key).kind(Value::Integer { min, max }).default(Default::Integer(default)).meaning(meaning)
 }
 
-/// Joins an architecture's own keys with the shared ones; `ALL` must be eleven more than `N`.
+/// Joins an architecture's own keys with the shared ones; `ALL` must be twelve more than `N`.
 #[must_use]
 pub const fn with_shared<const N: usize, const ALL: usize>(own: [Field; N]) -> [Field; ALL] {
     let mut all = [OWN; ALL];

@@ -5,7 +5,7 @@
 use super::Settings;
 use super::grid::evened;
 use crate::baselines::Arx;
-use crate::data::{DataSet, Scale, Trajectory};
+use crate::data::{DataSet, LEAST_PAST, Scale, Trajectory};
 use crate::{Ahead, LearnError, Model, Past};
 use burn::tensor::{Device, Tensor};
 use dynamics::Hold;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Largest number of samples in a past.
 const MOST_PAST: usize = 96;
 
-/// Smallest number of samples in a past, and in a block.
+/// Smallest number of samples in a block.
 const LEAST: usize = 8;
 
 /// Lower limit of the linear prediction's typical error, as a share of the spread of positions.
@@ -39,6 +39,9 @@ pub struct Frame {
     pub hold: Hold,
     /// Scales of the training part.
     pub scale: Scale,
+    /// `true` if the first sample of a short past is repeated before it; otherwise a short past is refused.
+    #[serde(default)]
+    pub(super) repeats: bool,
     /// Linear prediction of a block from past positions, in scaled units; row-major, past × block.
     from_positions: Vec<f64>,
     /// Linear prediction of a block from the inputs of past and block; row-major, (past + block) × block.
@@ -64,12 +67,14 @@ impl Framed {
         let own_s = rates.len() as f64 / rates.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         let stride = (data.period_s / own_s / settings.samples_per_period as f64).ceil().max(1.0);
         let interval_s = own_s * stride;
-        let past =
-            ((data.warm_up_s / interval_s * (1.0 + 1e-9)).floor() as usize + 1).clamp(LEAST, MOST_PAST);
+        let warm_up =
+            ((data.warm_up_s / interval_s * (1.0 + 1e-9)).floor() as usize + 1).clamp(LEAST_PAST, MOST_PAST);
+        let past = settings.past.unwrap_or(warm_up);
         let block = ((settings.block_periods * data.period_s / interval_s).round() as usize).max(LEAST);
         let mut frame = Frame {
             interval_s,
             past,
+            repeats: settings.past.is_some(),
             block,
             driven: data.is_driven(),
             hold: data.hold,

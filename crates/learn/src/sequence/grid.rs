@@ -4,26 +4,14 @@
 
 use crate::data::{Trajectory, interpolated, span_s};
 use crate::{Ahead, LearnError, Past};
-use dynamics::Hold;
+use dynamics::{Hold, Input};
 
 /// Returns the mean of an input over `interval` seconds from `time` on. Before the first and after the last
 /// sample, the input is constant.
-fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f64)) -> f64 {
-    debug_assert!(!times.is_empty() && times.len() == input.len());
-    let at = |time: f64| {
-        let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
-        let before = next.saturating_sub(1);
-        let (from, to) = (times[before], times[next]);
-        let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        match hold {
-            Hold::Linear | Hold::BandLimited => input[before] + share * (input[next] - input[before]),
-            Hold::Zero if share < 1.0 => input[before],
-            Hold::Zero => input[next],
-        }
-    };
-    // Midpoint rule: with even timestamps, the first midpoint reads the sample itself.
+fn averaged(input: &Input, (time, interval): (f64, f64)) -> f64 {
+    // Midpoint rule: with even timestamps, the first midpoint of a held input reads the sample itself.
     let parts = 8;
-    let mid = |part: i32| at(time + (f64::from(part) + 0.5) * interval / f64::from(parts));
+    let mid = |part: i32| input.at(time + (f64::from(part) + 0.5) * interval / f64::from(parts));
     (0..parts).map(mid).sum::<f64>() / f64::from(parts)
 }
 
@@ -33,17 +21,27 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Tra
     let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
     let times: Vec<f64> = (0..count).map(|at| first + at as f64 * interval).collect();
     let values = times.iter().map(|&time| interpolated(part.times_s(), part.values(), time)).collect();
-    let mean = |input: &[f64]| {
-        times.iter().map(|&time| averaged(part.times_s(), input, hold, (time, interval))).collect()
-    };
-    let input = part.input().map(mean);
+    let given = |input: &[f64]| Input::new(part.times_s().to_vec(), input.to_vec(), hold);
+    let input = part.input().map(given).transpose()?;
+    let mean = |input: Input| times.iter().map(|&time| averaged(&input, (time, interval))).collect();
+    let input = input.map(mean);
     Trajectory::new(part.name(), times, values, input)
 }
 
 /// Returns the positions at the last `count` even times of a past; the last one is its last sample.
-pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Result<Vec<f64>, LearnError> {
+/// The first sample of a past that is too short is repeated before it if `repeats` is set.
+pub(super) fn past_positions(
+    past: &Past<'_>,
+    interval: f64,
+    count: usize,
+    repeats: bool,
+) -> Result<Vec<f64>, LearnError> {
     // Jitter may shorten a past by part of an interval; the cubic interpolation bridges this gap.
     let there = (span_s(past.times_s) / interval + 0.5).floor() as usize + 1;
+    if repeats && there < count && !past.values.is_empty() {
+        let own = past_positions(past, interval, there, false)?;
+        return Ok(std::iter::repeat_n(past.values[0], count - there).chain(own).collect());
+    }
     let is_long = there >= count && past.times_s.len() >= 4;
     let Some(last) = past.times_s.last().filter(|_| is_long) else {
         return Err(LearnError::ShortPast {
@@ -80,8 +78,9 @@ pub(super) fn inputs(
             times: times.len(),
         });
     }
+    let input = Input::new(times, input, hold)?;
     let time = |at: usize| last + (at as f64 - before as f64 + 1.0) * interval;
-    Ok(Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect()))
+    Ok(Some((0..before + after).map(|at| averaged(&input, (time(at), interval))).collect()))
 }
 
 /// Interpolates values at the times of a record from values at even times that start at `first`.
@@ -117,7 +116,7 @@ mod tests {
         let motion = |time: f64| (6.0 * time).sin();
         let values: Vec<f64> = times.iter().map(|&time| motion(time)).collect();
         let past = Past { times_s: &times[..100], values: &values[..100], input: None };
-        let even = past_positions(&past, 0.02, 40).unwrap();
+        let even = past_positions(&past, 0.02, 40, false).unwrap();
         let last = times[99];
         assert!((even[0] - motion(last - 39.0 * 0.02)).abs() < 1e-4);
         let ahead: Vec<f64> = (0..100).map(|at| motion(last + 0.02 * f64::from(at))).collect();
@@ -131,7 +130,7 @@ mod tests {
     fn a_past_that_is_too_short_says_how_long_it_has_to_be() {
         let times = [0.0, 0.1, 0.2, 0.3, 0.4];
         let past = Past { times_s: &times, values: &times, input: None };
-        let error = past_positions(&past, 0.1, 8).unwrap_err().to_string();
+        let error = past_positions(&past, 0.1, 8, false).unwrap_err().to_string();
         assert!(error.contains("5 of the 8 samples") && error.contains("0.700 s"), "{error}");
     }
 }

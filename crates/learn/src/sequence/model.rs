@@ -70,7 +70,7 @@ impl<A: Architecture> SequenceModel<A> {
         let run = |(record, part): (usize, &Trajectory), share: f64| {
             let begin = (share * part.len() as f64) as usize;
             let part = part.part(begin, part.len());
-            let now = part.samples_within(data.warm_up_s).max(8);
+            let now = data.warm_up_samples(&part);
             let input = |from: usize, to: usize| part.input().and_then(|input| input.get(from..to));
             let past = Past {
                 times_s: part.times_s().get(..now)?,
@@ -113,7 +113,7 @@ impl<A: Architecture> Model for SequenceModel<A> {
         // Two samples beyond the last time, so that the interpolating cubic has samples on both sides.
         let needed = ((end - now) / frame.interval_s).ceil() as usize + 2;
         let after = needed.div_ceil(frame.block) * frame.block;
-        let start = past_positions(past, frame.interval_s, frame.past)?;
+        let start = past_positions(past, frame.interval_s, frame.past, frame.repeats)?;
         let mut positions: Vec<f64> = start.iter().map(|&value| frame.position_in(value)).collect();
         positions.resize(frame.past + after, 0.0);
         let given = inputs((past, ahead), frame.hold, frame.interval_s, [frame.past, after])?;

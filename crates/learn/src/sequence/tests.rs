@@ -18,6 +18,7 @@ use std::sync::Mutex;
 
 fn settings() -> Settings {
     Settings {
+        past: None,
         samples_per_period: 16,
         block_periods: 0.5,
         blocks: 3,

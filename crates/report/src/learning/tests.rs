@@ -18,6 +18,7 @@ fn row(id: &str, kind: LearnKind, error: Option<f64>) -> LearnRow {
             over_noise: Some(error / 1e-3),
             horizon_s: 4.0,
             one_step_rmse: None,
+            parts: Vec::new(),
             coverage_95: Some(0.947),
         }),
         coefficients: Some(BTreeMap::from([(
@@ -52,6 +53,7 @@ fn page(learner: f64) -> String {
         rate_hz: 50.0,
         period_s: 1.0,
         warm_up_s: 1.0,
+        parts: Vec::new(),
         noise: 1e-3,
         test_s: 9.0,
         input_hold: None,

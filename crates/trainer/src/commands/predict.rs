@@ -5,7 +5,7 @@ use crate::error::{LearnCommandError, TrainerError};
 use crate::options::Output;
 use crate::outcome::Outcome;
 use crate::terminal::table::table;
-use ::learn::data::Trajectory;
+use ::learn::data::{LEAST_PAST, Trajectory};
 use ::learn::learners::{LEARNERS, find};
 use ::learn::{Ahead, Past, Predicted, Stored};
 use clap::Args;
@@ -66,7 +66,7 @@ pub(crate) fn command(arguments: &PredictArguments) -> Result<Outcome, TrainerEr
     let about: About = stored.about_as().map_err(wrong)?;
     let part = read(&arguments.record, &arguments.reading, &about)?;
     let past_s = arguments.past.unwrap_or(about.warm_up_s);
-    let now = part.samples_within(past_s).max(8);
+    let now = part.samples_within(past_s).max(LEAST_PAST);
     let name = || part.name().to_owned();
     if now >= part.len() {
         return Err(LearnCommandError::NothingAhead { record: name(), samples: part.len(), past_s }.into());

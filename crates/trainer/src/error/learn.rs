@@ -15,6 +15,11 @@ pub(crate) enum LearnCommandError {
     )]
     NoFile { problem: String, folder: String, pattern: String },
     #[error(
+        "problem.{problem}.part.{part}: rows {from} to {to} are not all in {file}, which has {samples}; correct from_row \
+         and to_row, which count from 0"
+    )]
+    Rows { problem: String, part: String, file: String, samples: usize, from: usize, to: usize },
+    #[error(
         "problem.{problem}: {file}: {reason}; name the configuration of a simulation, as configs/simulate.toml is"
     )]
     Simulation { problem: String, file: String, reason: String },

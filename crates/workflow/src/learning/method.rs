@@ -1,6 +1,7 @@
 //! Methods of a learning study: the registries' learners and baselines, each fitted to a data set and scored.
 
 use super::Ready;
+use dynamics::System;
 use experiment::LearnSettings;
 use learn::baselines::{BASELINES, exact};
 use learn::data::DataSet;
@@ -10,7 +11,13 @@ use learn::{Context, Fitted, LearnError, Learner, Model};
 use results::{LearnKind, Reached};
 use settings::{Resolved, SettingsError};
 
-type Make<'a> = Box<dyn Fn(&Ready, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
+type Make<'a> = Box<dyn Fn(&Seen<'_>, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
+
+/// Data set without its test part, and the system that generated it for the reference alone.
+struct Seen<'a> {
+    data: DataSet,
+    truth: Option<&'a System>,
+}
 
 /// Learner, baseline or reference, ready to be fitted to a data set.
 pub struct Method<'a> {
@@ -48,15 +55,15 @@ pub fn methods<'a>(settings: &LearnSettings, resolved: &Resolved) -> Result<Vec<
     let mut methods: Vec<Method<'a>> = Vec::new();
     for entry in LEARNERS.iter().filter(|entry| wanted(&settings.learners, entry.id)) {
         let learner = (entry.build)(resolved)?;
-        let make: Make<'a> = Box::new(move |ready, context| learner.fit(&ready.data, context));
+        let make: Make<'a> = Box::new(move |seen, context| learner.fit(&seen.data, context));
         methods.push(Method { id: entry.id, title: entry.title, kind: LearnKind::Learner, make });
     }
     for baseline in BASELINES.iter().filter(|baseline| wanted(&settings.baselines, baseline.id)) {
-        let make: Make<'a> = Box::new(|ready, context| (baseline.make)(&ready.data, context));
+        let make: Make<'a> = Box::new(|seen, context| (baseline.make)(&seen.data, context));
         methods.push(Method { id: baseline.id, title: baseline.title, kind: LearnKind::Baseline, make });
     }
-    let make: Make<'a> = Box::new(|ready, context| match &ready.truth {
-        Some(system) => exact(system, &ready.data, context),
+    let make: Make<'a> = Box::new(|seen, context| match seen.truth {
+        Some(system) => exact(system, &seen.data, context),
         None => {
             Err(LearnError::Unsolvable { what: "exact fit", problem: "the truth is not known".to_owned() })
         }
@@ -68,16 +75,17 @@ pub fn methods<'a>(settings: &LearnSettings, resolved: &Resolved) -> Result<Vec<
 /// Wraps a learner from outside the registries as a method.
 #[must_use]
 pub fn method_of<'a>(id: &'a str, title: &'a str, learner: &'a dyn Learner) -> Method<'a> {
-    let make: Make<'a> = Box::new(move |ready, context| learner.fit(&ready.data, context));
+    let make: Make<'a> = Box::new(move |seen, context| learner.fit(&seen.data, context));
     Method { id, title, kind: LearnKind::Learner, make }
 }
 
-/// Fits a method to a data set and scores its model on the test part.
+/// Fits a method to a data set without its test part, and scores its model on the test part.
 ///
 /// # Errors
 /// [`LearnError`] if the method returns no model.
 pub fn attempt(ready: &Ready, method: &Method<'_>, context: &Context<'_>) -> Result<Judged, LearnError> {
-    let fitted = context.check().and_then(|()| (method.make)(ready, context))?;
+    let seen = Seen { data: ready.data.without_test(), truth: ready.truth.as_ref() };
+    let fitted = context.check().and_then(|()| (method.make)(&seen, context))?;
     Ok(judged(fitted.model, fitted.reached, &ready.data))
 }
 

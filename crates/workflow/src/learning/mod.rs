@@ -11,6 +11,7 @@ pub use rows::{ablation_rows, described, row, sort};
 pub use tried::{Tried, tried};
 
 use dynamics::System;
+use experiment::StatedPart;
 use learn::data::DataSet;
 
 /// Data set that can be learned from.
@@ -23,4 +24,6 @@ pub struct Ready {
     pub missing: Vec<String>,
     /// System that generated simulated records; used only for scoring.
     pub truth: Option<System>,
+    /// Stated parts; empty for records that are split.
+    pub parts: Vec<StatedPart>,
 }

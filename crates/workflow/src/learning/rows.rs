@@ -3,12 +3,13 @@
 use super::method::Method;
 use super::{Ready, Tried};
 use learn::LearnError;
-use learn::judge::{Score, Truth, runs, runs_on_noise, score_of_runs};
+use learn::data::Trajectory;
+use learn::judge::{Run, Score, Truth, run_error, runs, runs_on_noise, score_of_runs};
 use learn::learners::find;
 use record::Origin;
 use results::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnRow, LearnTest, LearnValidation,
-    Reached,
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
+    LearnPublished, LearnRow, LearnTest, LearnValidation, Reached,
 };
 use seed::Seed;
 use std::collections::BTreeMap;
@@ -49,7 +50,8 @@ pub fn row(
         Err(error) => row.failure = Some(error.to_string()),
         Ok(judged) => {
             let made = judged.model.as_ref();
-            row.test = Some(test(&judged.score, &ready.data.unit));
+            let parts = part_errors(&judged.runs, ready);
+            row.test = Some(LearnTest { parts, ..test(&judged.score, &ready.data.unit) });
             row.validation = validation(judged.validation, ready);
             row.coefficients = coefficients(made, truth);
             row.equation = made.equation();
@@ -118,7 +120,29 @@ fn test(score: &Score, unit: &str) -> LearnTest {
         horizon_s: score.horizon_s,
         one_step_rmse: finite(score.one_step_rmse),
         coverage_95: score.coverage_95,
+        parts: Vec::new(),
     }
+}
+
+/// Returns the error of each free run on a stated test part; empty for records that are split.
+fn part_errors(runs: &[Run], ready: &Ready) -> Vec<LearnPartError> {
+    let error = |run: &Run| {
+        let free_run_rmse = Some(run_error(run)).filter(|error| error.is_finite());
+        LearnPartError { part: run.name.clone(), free_run_rmse }
+    };
+    if ready.parts.is_empty() { Vec::new() } else { runs.iter().map(error).collect() }
+}
+
+/// Returns the stated test parts of a data set, with what others published for them.
+fn parts(ready: &Ready) -> Vec<LearnPart> {
+    let told = |part: &Trajectory| {
+        let stated = ready.parts.iter().find(|stated| stated.id == part.name())?;
+        let published = stated.published().into_iter();
+        let published =
+            published.map(|own| LearnPublished { name: own.name, free_run_rmse: own.error }).collect();
+        Some(LearnPart { id: stated.id.clone(), samples: part.len(), published })
+    };
+    ready.data.test.iter().filter_map(told).collect()
 }
 
 fn validation(free_run_rmse: f64, ready: &Ready) -> Option<LearnValidation> {
@@ -181,6 +205,7 @@ pub fn described(id: &str, title: &str, origin: Origin, ready: Result<&Ready, &S
         warm_up_s: 0.0,
         noise: 0.0,
         test_s: 0.0,
+        parts: Vec::new(),
         input_hold: None,
         missing: Vec::new(),
     };
@@ -194,6 +219,7 @@ pub fn described(id: &str, title: &str, origin: Origin, ready: Result<&Ready, &S
             validation: data.validation.len(),
             test: data.test.len(),
         };
+        described.parts = parts(ready);
         described.training_samples = data.training_samples();
         if let Some(first) = data.train.first() {
             described.rate_hz = first.rate_hz();

@@ -10,6 +10,6 @@ pub use ensemble::inclusion;
 pub use finish::{Finishing, finish, restore};
 pub(crate) use law::LAW;
 pub use law::law;
-pub(crate) use terms::signed;
 pub use terms::{Library, Term};
+pub(crate) use terms::{signed, weighted};
 pub use thresholding::{Regression, thresholded};

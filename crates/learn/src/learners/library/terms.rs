@@ -216,3 +216,9 @@ pub(crate) fn signed(number: usize, weight: f64) -> String {
     };
     format!("{sign}{:.5}", weight.abs())
 }
+
+/// Formats a sum of weights times terms, each of which begins with its sign of multiplication.
+pub(crate) fn weighted(terms: &[(f64, &str)]) -> String {
+    let one = |(number, (weight, term)): (usize, &(f64, &str))| format!("{}{term}", signed(number, *weight));
+    terms.iter().enumerate().map(one).collect()
+}

@@ -1,8 +1,8 @@
 //! Terminal output of `task = "learn"`: a table for each data set.
 
 use crate::terminal::table::table;
-use record::two_digits;
-use results::{LearnKind, LearnProblem, LearnResult, LearnRow};
+use record::{prefixed, two_digits};
+use results::{LearnKind, LearnPart, LearnProblem, LearnResult, LearnRow};
 use std::path::Path;
 
 const HEADER: [&str; 9] =
@@ -49,7 +49,10 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
     let own: Vec<&LearnRow> = result.results.iter().filter(|row| row.problem == problem.id).collect();
     let mut lines = vec![facts];
     lines.extend(problem.missing.iter().cloned());
-    lines.push(table(&HEADER, own.iter().map(|row| cells(row)).collect()));
+    lines.push(match problem.parts.is_empty() {
+        true => table(&HEADER, own.iter().map(|row| cells(row)).collect()),
+        false => table_of_parts(problem, &own),
+    });
     for row in &own {
         if let Some(failure) = &row.failure {
             lines.push(format!("{}: {failure}", row.id));
@@ -61,16 +64,54 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
     lines.join("\n")
 }
 
+/// Formats the errors on each stated test part, and below them what others published.
+fn table_of_parts(problem: &LearnProblem, rows: &[&LearnRow]) -> String {
+    let names = problem.parts.iter().map(|part| part.id.as_str());
+    let header: Vec<&str> =
+        ["method"].into_iter().chain(names).chain(["validation", "numbers", "s"]).collect();
+    let in_unit =
+        |error: Option<f64>| error.map_or_else(|| "∞".to_owned(), |error| prefixed(error, &problem.unit));
+    let own = |row: &&LearnRow| {
+        let error = |part: &LearnPart| {
+            let errors = row.test.as_ref().map(|test| &test.parts);
+            in_unit(errors.and_then(|errors| errors.iter().find(|own| own.part == part.id)?.free_run_rmse))
+        };
+        let validation = in_unit(row.validation.map(|validation| validation.free_run_rmse));
+        let numbers = [validation, row.parameters.to_string(), format!("{:.1}", row.seconds)];
+        [named(row)].into_iter().chain(problem.parts.iter().map(error)).chain(numbers).collect()
+    };
+    let mut published: Vec<&str> = Vec::new();
+    for name in problem.parts.iter().flat_map(|part| &part.published).map(|own| own.name.as_str()) {
+        if !published.contains(&name) {
+            published.push(name);
+        }
+    }
+    let of_others = |name: &str| {
+        let error = |part: &LearnPart| {
+            let own = part.published.iter().find(|own| own.name == name);
+            own.map_or_else(String::new, |own| prefixed(own.free_run_rmse, &problem.unit))
+        };
+        let cells = problem.parts.iter().map(error).chain(std::iter::repeat_n(String::new(), 3));
+        [format!("{name} (published)")].into_iter().chain(cells).collect()
+    };
+    let cells = rows.iter().map(own).chain(published.into_iter().map(of_others)).collect();
+    table(&header, cells)
+}
+
+/// Returns the name of a row's method; a method that is no learner says what it is.
+fn named(row: &LearnRow) -> String {
+    match row.kind {
+        LearnKind::Learner => row.id.clone(),
+        kind => format!("{} ({})", row.id, kind.name()),
+    }
+}
+
 fn cells(row: &LearnRow) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), two_digits);
     // An ablation is a free run of a model that was trained already: it has no one-step error and no duration
     // of its own.
     let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
-    let name = match row.kind {
-        LearnKind::Learner => row.id.clone(),
-        kind => format!("{} ({})", row.id, kind.name()),
-    };
-    let mut cells = vec![name];
+    let mut cells = vec![named(row)];
     match &row.test {
         None => cells.extend(vec![
             row.reached.name().to_owned(),

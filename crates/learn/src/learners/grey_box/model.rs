@@ -1,0 +1,131 @@
+//! Grey-box law as a model.
+
+use super::fit::{Point, Runs};
+use super::form::Form;
+use super::law::State;
+use super::run::{Piece, motion};
+use crate::data::Trajectory;
+use crate::flow::Running;
+use crate::{Ahead, Coefficient, LearnError, Model, Past, Place, Predicted, Stored, Tensor, Torque};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// Identifier of the learner.
+pub(super) const ID: &str = "grey-box";
+
+/// Fitted law. The start state of a prediction is the one that fits the past best.
+pub(super) struct GreyBox {
+    pub(super) about: About,
+    pub(super) parameters: Vec<f64>,
+    /// Typical hidden state.
+    pub(super) hidden: f64,
+    pub(super) coefficients: Vec<Coefficient>,
+}
+
+/// Contents of a model's file beside the numbers.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct About {
+    pub(super) form: Form,
+    pub(super) running: Running,
+    pub(super) state_sizes: State,
+    /// Typical size of the observed quantity.
+    pub(super) spread: f64,
+    /// Unit of the positions.
+    pub(super) unit: String,
+}
+
+/// Largest number of steps of a search for a start state.
+const MOST_STEPS: u64 = 40;
+
+impl GreyBox {
+    /// Builds a model from its numbers.
+    pub(super) fn new(about: About, parameters: Vec<f64>, hidden: f64) -> Self {
+        let law = about.form.law();
+        let named = law.names(&about.unit).into_iter().zip(law.stated(&parameters));
+        let coefficient =
+            |((name, unit), value)| Coefficient { name, value, unit, std_error: None, inclusion: None };
+        let coefficients = named.map(coefficient).collect();
+        Self { about, parameters, hidden, coefficients }
+    }
+
+    /// Restores a model from its file.
+    ///
+    /// # Errors
+    /// [`LearnError::Stored`] for a file of another form.
+    pub(super) fn restored(stored: &Stored) -> Result<Self, LearnError> {
+        let about: About = stored.described()?;
+        let parameters = stored.tensor("parameters")?.values.clone();
+        let expected = about.form.law().names(&about.unit).len();
+        if parameters.len() != expected {
+            let problem = format!("{} parameters where the law has {expected}", parameters.len());
+            return Err(LearnError::Stored { problem });
+        }
+        // A file without the number is one of a law without a hidden state.
+        let hidden = stored.tensor("hidden")?.values.first().copied().unwrap_or(0.0);
+        Ok(Self::new(about, parameters, hidden))
+    }
+
+    /// Fits the state at the first sample of a past.
+    fn start(&self, past: &Trajectory) -> Result<State, LearnError> {
+        let About { form, running, state_sizes, spread, .. } = &self.about;
+        let piece = Piece::new(past, running)?;
+        let runs = Runs {
+            law: form.law(),
+            pieces: std::slice::from_ref(&piece),
+            running,
+            sizes: &[],
+            state_sizes: *state_sizes,
+            free: &[],
+            spread: *spread,
+        };
+        let start = form.law().start(past, running.period_s, self.hidden);
+        let from = Point { parameters: self.parameters.clone(), starts: vec![start] };
+        let (found, _) = runs.fit(&from, MOST_STEPS, |_, _| ControlFlow::Continue(()))?;
+        Ok(found.starts.first().copied().unwrap_or(start))
+    }
+}
+
+impl Model for GreyBox {
+    fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
+        let About { form, running, .. } = &self.about;
+        let (times, values) = (past.times_s.to_vec(), past.values.to_vec());
+        let start = self.start(&Trajectory::new("past", times, values, past.input.map(<[f64]>::to_vec))?)?;
+        let times = [past.times_s, ahead.times_s].concat();
+        let input = past.input.zip(ahead.input).map(|(before, after)| [before, after].concat());
+        let whole = Trajectory::new("whole", times.clone(), times, input)?;
+        let found = motion(form.law(), &self.parameters, start, &Piece::new(&whole, running)?, running);
+        if let Some(time_s) = found.diverged_s {
+            return Err(LearnError::Diverged { time_s, bound: running.bound });
+        }
+        // If the past covers all times, nothing lies ahead.
+        let values = found.positions.get(past.times_s.len()..).unwrap_or_default().to_vec();
+        Ok(Predicted { values, std: None })
+    }
+
+    fn parameters(&self) -> usize {
+        self.parameters.len()
+    }
+
+    fn coefficients(&self) -> &[Coefficient] {
+        &self.coefficients
+    }
+
+    fn torque(&self, place: &Place) -> Option<Torque> {
+        let value = self.about.form.law().acceleration(&self.parameters, place)?;
+        Some(Torque { value, std: None })
+    }
+
+    fn equation(&self) -> Option<String> {
+        Some(self.about.form.law().equation(&self.parameters))
+    }
+
+    fn stored(&self) -> Option<Stored> {
+        let tensor = |name: &str, values: &[f64]| Tensor {
+            name: name.to_owned(),
+            shape: vec![values.len()],
+            values: values.to_vec(),
+        };
+        let tensors = vec![tensor("hidden", &[self.hidden]), tensor("parameters", &self.parameters)];
+        Stored::new(ID, &self.about, tensors).ok()
+    }
+}
