@@ -62,7 +62,12 @@ fn keys(value: &Value) -> Vec<Vec<String>> {
         }
         found.extend(keys(below).into_iter().map(|rest| [vec![key.clone()], rest].concat()));
     }
-    found.retain(|way| !(way.len() == 2 && way[0] == "problem"));
+    let is_named = |way: &[String]| match way {
+        [problem, _] => problem == "problem",
+        [problem, _, part, _] => problem == "problem" && part == "part",
+        _ => false,
+    };
+    found.retain(|way| !is_named(way));
     found
 }
 
