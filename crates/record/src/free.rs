@@ -1,5 +1,6 @@
 //! The part of a record in which the system swings freely, between hands that lift, hold, strike and stop it.
 
+use crate::FEWEST_SAMPLES;
 use crate::record::Record;
 use crate::recursion::is_one_motion;
 use crate::statistics::{extremes, noise_level, upper_median};
@@ -11,6 +12,14 @@ pub(crate) struct FreeSwing {
     pub(crate) samples: [usize; 2],
     /// Number of its half swings.
     pub(crate) half_swings: usize,
+}
+
+impl FreeSwing {
+    /// Returns `true` if it has the samples of a record.
+    fn is_record(&self) -> bool {
+        let [first, last] = self.samples;
+        last + 1 - first >= FEWEST_SAMPLES
+    }
 }
 
 /// Smallest number of half swings of a free swing.
@@ -82,7 +91,8 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     let ends = || breaks.iter().copied();
     let starts = std::iter::once(0).chain(ends());
     let pieces = starts.zip(ends().chain([turns.len()]));
-    let found: Vec<FreeSwing> = pieces.filter_map(|(from, to)| half_swings.free(from, to)).collect();
+    let found: Vec<FreeSwing> =
+        pieces.filter_map(|(from, to)| half_swings.free(from, to)).filter(FreeSwing::is_record).collect();
     let stamps = record.stamps_s();
     let between = |[from, to]: [usize; 2]| value(stamps, to) - value(stamps, from);
     let (Some(first), Some(last)) = (turns.first(), turns.last()) else { return Vec::new() };
@@ -110,7 +120,7 @@ fn after_rest(record: &Record, half_swings: usize) -> Vec<FreeSwing> {
     let (held, samples) = (record.samples_at_rest(), record.len());
     let is_rest = half_swings < FEWEST && held as f64 > REST * samples as f64;
     let motion = FreeSwing { samples: [held, samples - 1], half_swings };
-    if is_rest { vec![motion] } else { Vec::new() }
+    if is_rest && motion.is_record() { vec![motion] } else { Vec::new() }
 }
 
 impl Record {
