@@ -181,7 +181,9 @@ mod tests {
             Observations::new(&record, &clock)
         };
         let records: Vec<Observations> = forces.iter().map(record).collect();
-        let answer = diagnose(&records, &nominal, &Settings::default(), &|| 0.0).unwrap();
+        let answer =
+            diagnose(&records, &nominal, &Settings { most_effects: 2, ..Settings::default() }, &|| 0.0)
+                .unwrap();
         (answer.verdict.effects, answer.gap.repaired / answer.gap.noise_floor)
     }
 

@@ -103,7 +103,13 @@ mod tests {
             motion.position.iter().zip(noise).map(|(x, noise): (&f64, f64)| x + NOISE * noise).collect();
         let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
         let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
-        diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
+        diagnose(
+            &[Observations::new(&record, &clock)],
+            &nominal,
+            &Settings { most_effects: 2, ..Settings::default() },
+            &|| 0.0,
+        )
+        .unwrap()
     }
 
     /// Wavenumber and torque of the effect without a name, with their intervals.

@@ -297,7 +297,7 @@ mod tests {
             Observations::new(&record, &Clock::new(&record, ClockChoice::Host).unwrap())
         };
         let records = [observe(0.4, 0.0), observe(0.2, rate)];
-        diagnose(&records, &nominal, &Settings::default(), &|| 0.0).unwrap()
+        diagnose(&records, &nominal, &Settings { most_effects: 2, ..Settings::default() }, &|| 0.0).unwrap()
     }
 
     /// Percentage by which the second clock is reported to be fast.
