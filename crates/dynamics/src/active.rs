@@ -1,7 +1,7 @@
 //! Effect with values for its parameters.
 
 use crate::error::DynamicsError;
-use crate::law::{MOST_PARAMETERS, Values};
+use crate::law::{Hidden, MOST_HIDDEN, MOST_PARAMETERS, Values};
 use crate::registry::Effect;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 pub struct Active {
     effect: Effect,
     values: Values<f64>,
+    start: Option<Hidden<f64>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -22,6 +23,8 @@ struct Raw {
     id: String,
     #[serde(default)]
     parameters: BTreeMap<String, f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    start: Option<Vec<f64>>,
 }
 
 impl Active {
@@ -64,7 +67,29 @@ impl Active {
             }
             *own = value;
         }
-        Ok(Self { effect, values: own })
+        Ok(Self { effect, values: own, start: None })
+    }
+
+    /// Returns the effect with its hidden states at the start of a simulated motion, in the order of its law and in SI
+    /// units; without them it starts relaxed and moves along. A diagnosis fits its own.
+    ///
+    /// # Errors
+    /// Returns [`DynamicsError::WrongNumberOfStates`], or [`DynamicsError::BadStart`] if one is not finite.
+    pub fn starting_at(self, states: &[f64]) -> Result<Self, DynamicsError> {
+        let description = self.effect.description();
+        if states.len() != description.hidden_states {
+            return Err(DynamicsError::WrongNumberOfStates {
+                effect: description.id,
+                expected: description.hidden_states,
+                found: states.len(),
+            });
+        }
+        if let Some(&value) = states.iter().find(|value| !value.is_finite()) {
+            return Err(DynamicsError::BadStart { what: "hidden state", value });
+        }
+        let mut start = [0.0; MOST_HIDDEN];
+        start.iter_mut().zip(states).for_each(|(slot, state)| *slot = *state);
+        Ok(Self { start: Some(start), ..self })
     }
 
     /// Creates an effect from its public id, with values by name.
@@ -129,6 +154,12 @@ impl Active {
         self.values.get(index).copied()
     }
 
+    /// Returns the hidden states at the start of a simulated motion, if they are given.
+    #[must_use]
+    pub fn start(&self) -> Option<&[f64]> {
+        self.start.as_ref().and_then(|states| states.get(..self.effect.description().hidden_states))
+    }
+
     pub(crate) fn all_values(&self) -> Values<f64> {
         self.values
     }
@@ -140,13 +171,18 @@ impl TryFrom<Raw> for Active {
     fn try_from(raw: Raw) -> Result<Self, DynamicsError> {
         let parameters: Vec<(&str, f64)> =
             raw.parameters.iter().map(|(name, &value)| (name.as_str(), value)).collect();
-        Self::named(&raw.id, &parameters)
+        let active = Self::named(&raw.id, &parameters)?;
+        raw.start.map_or(Ok(active), |states| active.starting_at(&states))
     }
 }
 
 impl From<Active> for Raw {
     fn from(active: Active) -> Self {
         let names = active.effect.description().parameters.iter().map(|parameter| parameter.name.to_owned());
-        Self { id: active.id().to_owned(), parameters: names.zip(active.values().iter().copied()).collect() }
+        Self {
+            id: active.id().to_owned(),
+            parameters: names.zip(active.values().iter().copied()).collect(),
+            start: active.start().map(<[f64]>::to_vec),
+        }
     }
 }

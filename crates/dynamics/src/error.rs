@@ -56,6 +56,16 @@ pub enum DynamicsError {
         /// Number of values given.
         found: usize,
     },
+    /// The number of hidden states is wrong.
+    #[error("`{effect}` has {expected} hidden states, not {found}")]
+    WrongNumberOfStates {
+        /// Id of the effect.
+        effect: &'static str,
+        /// Number of the effect's hidden states.
+        expected: usize,
+        /// Number of states given.
+        found: usize,
+    },
     /// A parameter is outside its range.
     #[error("`{effect}`: `{parameter}` is {value}; expected {range}")]
     OutOfRange {

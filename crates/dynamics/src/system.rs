@@ -137,6 +137,18 @@ impl System {
         Field { nominal: self.nominal.coefficients(), terms }
     }
 
+    /// Returns the hidden states at the start of a simulated motion: those given, and the others relaxed.
+    pub(crate) fn hidden_at(&self, start: Start) -> [f64; SYSTEM_HIDDEN] {
+        let field = self.field();
+        let mut hidden = field.relaxed(start.position, start.velocity);
+        let acting = self.effects.iter().filter(|active| acting(active).is_ok());
+        for (active, term) in acting.zip(&field.terms) {
+            let given = active.start().unwrap_or_default();
+            hidden.iter_mut().skip(term.hidden).zip(given).for_each(|(slot, state)| *slot = *state);
+        }
+        hidden
+    }
+
     pub(crate) fn input_delay(&self) -> f64 {
         self.field().input_delay()
     }

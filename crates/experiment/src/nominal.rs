@@ -164,6 +164,10 @@ const OF_SIMULATION: &[Field] = &[
 
 const EFFECT: &[Field] = &[
     NUMBER
+        .key("start")
+        .kind(Kind::Floats { min: f64::MIN, max: f64::MAX, at_least: 1, at_most: dynamics::MOST_HIDDEN })
+        .meaning("Its hidden states at the start of a simulated motion. A diagnosis finds its own."),
+    NUMBER
         .key("id")
         .kind(Kind::Text)
         .default(Default::Required)

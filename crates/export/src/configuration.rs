@@ -19,10 +19,6 @@ pub fn configuration(repaired: &Repaired) -> String {
     for sentence in &repaired.left_out {
         let _ = writeln!(text, "#\n# Not part of it: {}", one_line(sentence));
     }
-    // A simulated record starts with its effects relaxed.
-    for (id, states) in &repaired.hidden_starts {
-        let _ = writeln!(text, "#\n# Not part of it: the hidden states of {id} at the start, {states:?}");
-    }
     text.push_str("\ntask = \"simulate\"\nname = \"repaired\"\nseed = 0\n\n[record]\n");
     number(&mut text, "rate_hz", repaired.rate_hz, "Hz");
     number(&mut text, "seconds", repaired.seconds, "s");
@@ -60,6 +56,9 @@ pub fn configuration(repaired: &Repaired) -> String {
         for (parameter, value) in description.parameters.iter().zip(active.values()) {
             let key = format!("parameters.{}", parameter.name);
             number(&mut text, &key, *value, repaired.unit(parameter.quantity));
+        }
+        if let Some(states) = repaired.hidden_start(description.id) {
+            let _ = writeln!(text, "{:<48}# its hidden states at the start", format!("start = {states:?}"));
         }
     }
     text

@@ -103,7 +103,8 @@ impl Plan {
             .map(|planned| {
                 let own = seed.child(planned.effect.id());
                 let values: Vec<f64> = planned.parameters.iter().map(|number| number.draw(&own)).collect();
-                Ok(Active::of(planned.effect, &values)?)
+                let active = Active::of(planned.effect, &values)?;
+                Ok(planned.start.as_ref().map_or(Ok(active), |states| active.starting_at(states))?)
             })
             .collect()
     }

@@ -2,8 +2,8 @@
 
 use crate::number::NumberKey;
 use crate::plan::{
-    ConfiguredUnits, EFFECT_ID, NOMINAL_CHOICES, PROBABILITY, noise_key, nominal_keys, parameter_keys,
-    start_keys,
+    ConfiguredUnits, EFFECT_ID, HIDDEN_START, NOMINAL_CHOICES, PROBABILITY, noise_key, nominal_keys,
+    parameter_keys, start_keys,
 };
 use crate::schema::{PRIOR, SECTIONS};
 use dynamics::{REGISTRY, Range, UNNAMED};
@@ -57,7 +57,7 @@ pub fn simulate_schema() -> Value {
 /// Returns the schema of a table of `[[effects]]`, whose parameters depend on its id.
 fn effect(units: ConfiguredUnits) -> Value {
     let ids: Vec<&str> = REGISTRY.iter().chain(UNNAMED).map(|effect| effect.id()).collect();
-    let mut table = json_schema::table(&[PROBABILITY]);
+    let mut table = json_schema::table(&[PROBABILITY, HIDDEN_START]);
     let id = json!({ "enum": ids, "description": json_schema::description(&EFFECT_ID) });
     json_schema::insert(&mut table, "", "id", id);
     json_schema::insert(&mut table, "", "parameters", json!({ "type": "object" }));

@@ -46,6 +46,8 @@ pub(crate) struct PlannedEffect {
     pub(crate) effect: Effect,
     pub(crate) probability: f64,
     pub(crate) parameters: Vec<Number>,
+    /// Hidden states at the start.
+    pub(crate) start: Option<Vec<f64>>,
 }
 
 /// Standard deviations of the believed coefficients about the true ones; relative, except for the rest angle.
@@ -102,6 +104,7 @@ struct SensorKeys {
 #[derive(Deserialize)]
 struct EffectKeys {
     probability: f64,
+    start: Option<Vec<f64>>,
 }
 
 /// Keys of the nominal oscillator that are never drawn.
@@ -116,6 +119,14 @@ pub(crate) const NOMINAL_CHOICES: [Field; 2] = [
 pub(crate) const PROBABILITY: Field =
     Field::new("probability", Kind::Float { min: 0.0, max: 1.0 }, Default::Float(1.0))
         .meaning("Chance that a system has the effect; with simulate.effects_per_system its weight.");
+
+/// Hidden states of an effect at the start of a simulated motion.
+pub(crate) const HIDDEN_START: Field = Field::new(
+    "start",
+    Kind::Floats { min: f64::MIN, max: f64::MAX, at_least: 1, at_most: dynamics::MOST_HIDDEN },
+    Default::Absent,
+)
+.meaning("Its hidden states at the start of a simulated motion; left out, it is relaxed and moves along.");
 
 pub(crate) const EFFECT_ID: Field = Field::new("id", Kind::Text, Default::Required)
     .meaning("The effect, as `trainer list effects` names it.");
@@ -209,9 +220,9 @@ impl Plan {
         let choices: NominalKeys = resolved.section(nominal_table)?;
         let sensor: SensorKeys = resolved.section("sensor")?;
         let planned = effects.into_iter().zip(&parameters).map(|((table, effect), keys)| {
-            let EffectKeys { probability } = resolved.section(&table)?;
+            let EffectKeys { probability, start } = resolved.section(&table)?;
             let parameters = read(document, &resolved, &dotted(&table, "parameters"), keys)?;
-            Ok(PlannedEffect { effect, probability, parameters })
+            Ok(PlannedEffect { effect, probability, parameters, start })
         });
         let effects = planned.collect::<Result<Vec<_>, SettingsError>>()?;
         let [noise] = read_all(document, &resolved, "sensor", &[noise_key(units)])?;
@@ -305,7 +316,7 @@ fn declared(
     add("start", &[], &start_keys(units));
     add("sensor", &[], &[noise_key(units)]);
     for ((table, _), keys) in effects.iter().zip(parameters) {
-        add(table, &[EFFECT_ID, PROBABILITY], &[]);
+        add(table, &[EFFECT_ID, PROBABILITY, HIDDEN_START], &[]);
         add(&dotted(table, "parameters"), &[], keys);
     }
     sections

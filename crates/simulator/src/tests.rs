@@ -330,3 +330,35 @@ fn mistakes_are_pointed_at() {
     assert!(impossible(&["effects.3.parameters.interval=1e-3"]).contains("holds zero samples"));
     assert!(impossible(&["record.rate_hz=1e9", "record.seconds=1e6"]).contains("samples is"));
 }
+
+/// A second body that starts elsewhere pulls with its spring from the beginning: k₂·(ψ − θ) = 0.2·(0.1 − 0.5) N m on 2e-3 kg m².
+#[test]
+fn a_second_body_starts_where_it_is_stated() {
+    let text = r#"task = "simulate"
+[record]
+rate_hz = 1000.0
+seconds = 0.1
+[nominal]
+inertia = 2e-3
+damping = 0.0
+stiffness = 0.3
+[start]
+position = 0.5
+[sensor]
+noise = 0.0
+[[effects]]
+id = "flexible_coupling"
+parameters.inertia = 1e-4
+parameters.stiffness = 0.2
+parameters.damping = 0.0
+"#;
+    let second = |text: &str| {
+        let (record, _) = plan(text, &[]).record(0, 0).unwrap();
+        (record.values()[1] - record.values()[0]) / (0.5 * 1e-6)
+    };
+    let [relaxed, apart] = [text.to_owned(), format!("{text}start = [0.1, 0.0]\n")].map(|text| second(&text));
+    assert!((relaxed + 0.3 * 0.5 / 2e-3).abs() < 0.1, "{relaxed}");
+    assert!((apart - relaxed + 0.2 * 0.4 / 2e-3).abs() < 0.1, "{apart} {relaxed}");
+    let short = plan(&format!("{text}start = [0.1]\n"), &[]).record(0, 0).unwrap_err();
+    assert!(short.to_string().contains("`flexible_coupling` has 2 hidden states, not 1"), "{short}");
+}

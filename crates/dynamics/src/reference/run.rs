@@ -74,7 +74,7 @@ impl<'a> Run<'a> {
         let duration = end - time;
         let drive = Drive::new(input, field.nominal.input_gain, system.input_delay(), time);
         let mut vector = [0.0; LENGTH];
-        let hidden = field.relaxed(start.position, start.velocity);
+        let hidden = system.hidden_at(start);
         for (slot, value) in vector.iter_mut().zip([start.position, start.velocity].into_iter().chain(hidden))
         {
             *slot = value;
