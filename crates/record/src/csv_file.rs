@@ -101,7 +101,8 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let places = time.or(counter);
     let (value, also) = roles.value(places, &|at| Swing::of(&table.numbers(at, &rows)))?;
     let taken: Vec<usize> = [Some(value), places].into_iter().flatten().map(|pick| pick.at).collect();
-    let (input, note) = roles.input(&taken, &|at| table.is_affine([value.at, at], &rows))?;
+    let (input, note) =
+        roles.input(&taken, &|at| table.moves(at, &rows), &|at| table.is_affine([value.at, at], &rows))?;
     if let Some(fault) = filter.is_none().then(|| table.series(false)).flatten() {
         return Err(fault);
     }

@@ -165,14 +165,18 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
             && cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
     };
     let find = |width: usize| above.iter().rposition(|(_, line)| is_title(line, width));
-    let Some(mut at) = find(width).or_else(|| find(2)).or_else(|| find(1)) else {
-        return in_comment(text, dialect, &lines, width);
+    let Some(mut at) = find(width).or_else(|| find(2)) else {
+        // Words that a program prints before its first numbers are no samples.
+        let is_word = |line: &str| dialect.numbers(&dialect.split(line)) == 0;
+        let words = lines.iter().take_while(|(_, line)| is_word(line)).count();
+        let rows = lines.get(words..).filter(|rows| !rows.is_empty()).unwrap_or(&lines);
+        return in_comment(text, dialect, rows, width);
     };
     let mut units = None;
     let row = |at: usize| above.get(at).map_or((1, ""), |row| *row);
     let cells = dialect.split(row(at).1);
     let before = at.checked_sub(1).filter(|before| is_title(row(*before).1, width));
-    if let Some(before) = before.filter(|_| cells.iter().all(|cell| is_unit(cell))) {
+    if let Some(before) = before.filter(|_| are_units(&cells)) {
         units = Some(cells);
         at = before;
     }
@@ -204,9 +208,12 @@ fn units_of_scope<'a>(dialect: Dialect, above: &[(u64, &'a str)]) -> Option<Vec<
     Some(std::iter::once(time.unwrap_or("s")).chain(channels).collect())
 }
 
-fn is_unit(cell: &str) -> bool {
-    let bare = cell.trim_matches(['[', ']', '(', ')']);
-    bare.is_empty() || bare == "-" || measure_of(bare).is_some()
+fn are_units(cells: &[&str]) -> bool {
+    let bare = || cells.iter().map(|cell| cell.trim_matches(['[', ']', '(', ')']));
+    let told = bare().filter(|bare| bare.chars().any(char::is_alphabetic));
+    let (known, unknown): (Vec<_>, Vec<_>) = told.partition(|bare| measure_of(bare).is_some());
+    // Units of columns that nobody observes, as degrees or percent, are seldom known.
+    known.len() > unknown.len() || known.is_empty() && unknown.is_empty()
 }
 
 /// Returns the number of cells up to the last nonempty one.

@@ -2,7 +2,7 @@
 
 use crate::FEWEST_SAMPLES;
 use crate::record::Record;
-use crate::recursion::is_one_motion;
+use crate::recursion::{between_strikes, is_one_motion};
 use crate::statistics::{extremes, noise_level, upper_median};
 
 /// A free swing within a record.
@@ -56,14 +56,16 @@ const GAP: f64 = 0.25;
 /// Part of a record from which a rest at its beginning is left out. A motion that begins slowly stays within the noise for
 /// less.
 const REST: f64 = 0.1;
+/// Number of half swings within which a motion that something begins at once is large.
+const FIRST: usize = 3;
 /// Deviation from rest, in standard deviations of the noise, from which something moves.
 const AT_REST: f64 = 6.0;
 
 /// A turning point of a record.
 #[derive(Debug, Clone, Copy)]
-struct Turn {
+pub(crate) struct Turn {
     /// Index of the sample.
-    at: usize,
+    pub(crate) at: usize,
     /// Indices of the first and last sample of the plateau around it.
     plateau: [usize; 2],
 }
@@ -83,6 +85,7 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     if turns.len() <= FEWEST {
         return after_rest(record, turns.len());
     }
+    let whole: Vec<Turn> = turns.clone();
     // A record that begins within a half swing has its first turning point after that.
     let begins_within = HalfSwings::new(record, &turns, least).begins_within();
     turns.drain(..usize::from(begins_within));
@@ -111,14 +114,31 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
         || half_swings.goes_on_after(&found);
     let is_cut = is_most && !is_whole && !is_swing;
     // Beside another mode half swings are as uneven as beside a hand.
-    if is_cut && !is_one_motion(values, half_swings.usual[1]) { found } else { Vec::new() }
+    let [_, half_swing] = half_swings.usual;
+    if is_cut && !is_one_motion(values, half_swing) {
+        return found;
+    }
+    // Rows are not even in time where some are missing.
+    let usual = between([0, values.len() - 1]) / (values.len() - 1) as f64;
+    let is_even = stamps.iter().zip(stamps.iter().skip(1)).all(|(one, next)| next - one < 2.0 * usual);
+    let pieces = if is_even { between_strikes(values, half_swing) } else { Vec::new() };
+    let found: Vec<FreeSwing> =
+        pieces.into_iter().filter_map(|samples| half_swings.between(samples)).collect();
+    if found.is_empty() && begins_large(record, &whole) { after_rest(record, whole.len()) } else { found }
 }
 
-/// Returns the motion after a rest if a record begins with one and then moves for so few half swings that these do not
-/// tell a free swing: the answer to a step, or to a release, of a well-damped system.
+/// Returns `true` if one of the first half swings of a record is no less than half the largest.
+fn begins_large(record: &Record, turns: &[Turn]) -> bool {
+    let at = |turn: &Turn| value(record.values(), turn.at);
+    let heights = turns.iter().zip(turns.iter().skip(1)).map(|(one, next)| (at(next) - at(one)).abs());
+    let largest = heights.clone().fold(0.0, f64::max);
+    heights.take(FIRST).any(|height| height > 0.5 * largest)
+}
+
+/// Returns the motion after a rest if a record begins with one: the answer to a step, a release or a strike.
 fn after_rest(record: &Record, half_swings: usize) -> Vec<FreeSwing> {
     let (held, samples) = (record.samples_at_rest(), record.len());
-    let is_rest = half_swings < FEWEST && held as f64 > REST * samples as f64;
+    let is_rest = held as f64 > REST * samples as f64;
     let motion = FreeSwing { samples: [held, samples - 1], half_swings };
     if is_rest && motion.is_record() { vec![motion] } else { Vec::new() }
 }
@@ -147,7 +167,7 @@ impl Record {
 
 /// Returns the turning points of a series: extremes from which it turns back by eight times its noise and a
 /// thirtieth of its range at least. Returns that height as well.
-fn turning_points(values: &[f64]) -> (Vec<Turn>, f64) {
+pub(crate) fn turning_points(values: &[f64]) -> (Vec<Turn>, f64) {
     let [lowest, highest] = extremes(values);
     let noise = noise_level(values);
     let least = (8.0 * noise).max((highest - lowest) / 30.0);
@@ -287,6 +307,15 @@ impl<'a> HalfSwings<'a> {
         let start = if from == 0 && !self.is_held(0) { 0 } else { self.turns.get(from)?.plateau[1] };
         let end = if is_last && slowed.is_none() { samples - 1 } else { self.turns.get(from + count)?.at };
         (end > start).then_some(FreeSwing { samples: [start, end], half_swings: count })
+    }
+
+    /// Returns what lies between two samples as a free swing; `None` if it hardly swings there.
+    fn between(&self, [start, end]: [usize; 2]) -> Option<FreeSwing> {
+        let inside = |turn: &Turn| (start..=end).contains(&turn.at);
+        let within = self.turns.iter().zip(&self.heights).filter(|(turn, _)| inside(turn));
+        let half_swings = within.filter(|(_, height)| **height > self.large).count();
+        let swing = FreeSwing { samples: [start, end], half_swings };
+        (half_swings >= FEWEST && swing.is_record()).then_some(swing)
     }
 
     /// Returns `true` if many large half swings follow the last of some free swings: what a hand has stopped

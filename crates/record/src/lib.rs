@@ -26,6 +26,7 @@ mod line;
 mod look;
 mod lost;
 mod names;
+mod one_sided;
 mod options;
 mod parsed;
 mod reading;

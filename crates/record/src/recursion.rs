@@ -1,6 +1,6 @@
 //! Test for one motion: of a linear system on which nothing acts, however many modes it has.
 
-use crate::statistics::upper_median;
+use crate::statistics::{extremes, upper_median};
 use nalgebra::{DMatrix, DVector};
 
 /// Number of earlier values in the recursion, of a short series and of a longer one: three and five modes. A long recursion
@@ -16,20 +16,98 @@ const FEWEST: usize = 40;
 /// 1.2 to 2.0 for simulated decays of one to three modes, dry friction and noise of up to 3 % of the amplitude; 2.8 and
 /// more where a hand lifts, holds, strikes or stops.
 const EVEN: f64 = 2.2;
+/// The same ratio, and the part of the range that a residual has to be as well, from which something moved the system.
+const STRUCK: f64 = 8.0;
+const SEEN: f64 = 0.02;
+/// Growth of the motion at a strike, and the parts before and after it in which that is seen.
+const GROWS: f64 = 1.3;
+const AROUND: usize = 4;
+/// Samples from one value of the recursion to the next, from which three neighbors are nearly equal.
+const DENSE: usize = 3;
 /// Singular values, as a part of the largest one, that are zero.
 const ZERO: f64 = 1e-9;
 
 /// Returns `true` if one linear recursion describes a series of even samples everywhere equally well. Free motion of a
 /// linear system follows such a recursion; a hand that lifts, holds, strikes or stops it is a part with large residuals.
 /// `half_swing` is the number of samples in a half swing. `false` for a short series.
-///
-/// The recursion is the covariance method of linear prediction with a constant (Makhoul, Linear prediction: a tutorial
-/// review, Proc. IEEE 63, 1975, section II).
 pub(crate) fn is_one_motion(values: &[f64], half_swing: f64) -> bool {
-    let step = ((half_swing / PER_HALF_SWING) as usize).max(1);
-    let series: Vec<f64> = values.iter().copied().step_by(step).collect();
+    let series: Vec<f64> = values.iter().copied().step_by(step(half_swing)).collect();
+    residuals(&series).is_some_and(|found| {
+        let usual = upper_median(found.parts.clone());
+        usual.is_some_and(|usual| found.parts.iter().all(|part| *part <= EVEN * usual))
+    })
+}
+
+/// Returns the pieces of a series between strikes, whatever the modes of the system, by the indices of their first and last
+/// sample: between parts with large residuals after which it swings farther than before. A stop that is hit takes energy.
+/// None if there is no such part, and for a series with so few samples in a half swing that a wrong value could not be
+/// told from the motion.
+pub(crate) fn between_strikes(values: &[f64], half_swing: f64) -> Vec<[usize; 2]> {
+    let step = step(half_swing);
+    if step < DENSE {
+        return Vec::new();
+    }
+    // Of three neighbors the middle value: a single wrong one moves nothing.
+    let near = |at: usize| values.get(at.saturating_sub(1)..values.len().min(at + 2));
+    let series = (0..values.len()).step_by(step);
+    let series: Vec<f64> = series.filter_map(|at| upper_median(near(at)?.to_vec())).collect();
+    let Some(found) = residuals(&series) else { return Vec::new() };
+    let Some(usual) = upper_median(found.parts.clone()) else { return Vec::new() };
+    let [lowest, highest] = extremes(&series);
+    let least = (STRUCK * usual).max(SEEN * (highest - lowest));
+    let order = found.order;
+    let energy = |from: usize, to: usize| {
+        let part = series.get(from..to.min(series.len())).unwrap_or_default();
+        deviation(part)
+    };
+    // A sample is predicted by those of the part before, so that a strike also shows in the part after it.
+    let large: Vec<bool> = found.parts.iter().map(|part| *part > least).collect();
+    let runs = large.chunk_by(|one, next| one == next).scan(0, |part, run| {
+        let from = *part;
+        *part += run.len();
+        Some((run.first() == Some(&true), (from + 1) * order, (*part + 1) * order))
+    });
+    let strikes: Vec<[usize; 2]> = runs
+        .filter(|&(is_large, from, to)| {
+            let before = energy(from.saturating_sub(AROUND * order), from);
+            is_large && energy(to, to + AROUND * order) > GROWS * before
+        })
+        .map(|(_, from, to)| [from * step, to * step])
+        .collect();
+    let starts = std::iter::once(0).chain(strikes.iter().map(|strike| strike[1]));
+    let ends = strikes.iter().map(|strike| strike[0]).chain([values.len()]);
+    let pieces = starts.zip(ends).filter(|(start, end)| start < end);
+    if strikes.is_empty() { Vec::new() } else { pieces.map(|(start, end)| [start, end - 1]).collect() }
+}
+
+/// Returns the standard deviation; 0 of nothing.
+fn deviation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// Returns the number of samples from one value of the recursion to the next.
+fn step(half_swing: f64) -> usize {
+    ((half_swing / PER_HALF_SWING) as usize).max(1)
+}
+
+/// Residuals of a recursion.
+#[derive(Debug)]
+struct Residuals {
+    /// Number of values that predict the next.
+    order: usize,
+    /// Root mean squares of parts with as many values, from the first one that is predicted.
+    parts: Vec<f64>,
+}
+
+/// Fits a recursion; `None` for a short series.
+///
+/// The covariance method of linear prediction with a constant (Makhoul, Linear prediction: a tutorial review, Proc. IEEE 63,
+/// 1975, section II).
+fn residuals(series: &[f64]) -> Option<Residuals> {
     if series.len() < FEWEST {
-        return false;
+        return None;
     }
     let [short, long] = ORDERS;
     let order = if series.len() < LONG { short } else { long };
@@ -40,17 +118,15 @@ pub(crate) fn is_one_motion(values: &[f64], half_swing: f64) -> bool {
     let next = DVector::from_iterator(rows, series.iter().skip(order).copied());
     let decomposition = earlier.clone().svd(true, true);
     let zero = ZERO * decomposition.singular_values.max();
-    let Ok(recursion) = decomposition.solve(&next, zero) else { return false };
-    let residuals = next - earlier * recursion;
-    let square = |part: &[f64]| part.iter().map(|residual| residual * residual).sum::<f64>();
-    let squares: Vec<f64> = residuals.as_slice().chunks_exact(order).map(square).collect();
-    let most = squares.iter().copied().fold(0.0, f64::max);
-    upper_median(squares).is_some_and(|usual| most <= EVEN * EVEN * usual)
+    let residuals = decomposition.solve(&next, zero).ok().map(|recursion| next - earlier * recursion)?;
+    let size =
+        |part: &[f64]| (part.iter().map(|residual| residual * residual).sum::<f64>() / order as f64).sqrt();
+    Some(Residuals { order, parts: residuals.as_slice().chunks_exact(order).map(size).collect() })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::is_one_motion;
+    use super::{between_strikes, is_one_motion};
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
@@ -87,5 +163,28 @@ mod tests {
             assert!(!is_one(noise, |time| decay(time % 12.0, 6.0)));
             assert!(!is_one(noise, |time| if time < 5.0 { 1.0 } else { decay(time - 5.0, 6.0) }));
         }
+    }
+
+    /// Two modes, struck twice after a rest; a stop that is hit takes energy and is no strike.
+    #[test]
+    fn strikes_are_found_whatever_the_modes() {
+        let ring = |time: f64| {
+            let mode = |omega: f64, zeta: f64| (-zeta * omega * time).exp() * (omega * time).sin();
+            if time < 0.0 { 0.0 } else { mode(56.5, 0.008) + 0.6 * mode(89.2, 0.006) }
+        };
+        let mut draws = rand_chacha::ChaCha8Rng::seed_from_u64(9);
+        let mut value = |time: f64| {
+            let draw: f64 = StandardNormal.sample(&mut draws);
+            ring(time - 0.5) + ring(time - 7.0) + 1e-3 * draw
+        };
+        let values: Vec<f64> = (0..7000).map(|at| value(0.002 * f64::from(at))).collect();
+        let pieces = between_strikes(&values, 25.0);
+        assert_eq!(pieces.len(), 3, "{pieces:?}");
+        for ([from, _], strike) in pieces[1..].iter().zip([250, 3500]) {
+            assert!((strike..strike + 60).contains(from), "{pieces:?}");
+        }
+        let stopped = |time: f64| decay(time, 6.0).clamp(-0.8, 2.0);
+        let values: Vec<f64> = (0..3000).map(|at| stopped(0.01 * f64::from(at))).collect();
+        assert!(between_strikes(&values, 52.0).is_empty());
     }
 }

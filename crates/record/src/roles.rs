@@ -386,11 +386,12 @@ impl Roles<'_> {
     }
 
     /// Returns the input, if there is one, and sentences if several columns could be it. Torques and forces are
-    /// accepted; commands and voltages only if the system is known to be driven. `is_observed` tells a column that
-    /// is the observed one in other units, as a sensor's own voltage is.
+    /// accepted; commands and voltages only if the system is known to be driven. Of columns that tie, one that never `moves` drives nothing.
+    /// `is_observed` tells one that is the observed one in other units, as a sensor's own voltage is.
     pub(crate) fn input(
         &self,
         taken: &[usize],
+        moves: &dyn Fn(usize) -> bool,
         is_observed: &dyn Fn(usize) -> bool,
     ) -> Result<(Option<Pick>, Vec<String>), Fault> {
         if let Some(name) = &self.asked().input {
@@ -424,13 +425,17 @@ impl Roles<'_> {
             [] => None,
             [(best, _), (next, _), ..] if best == next => {
                 let titles = self.titles(|column| score(&column.heading) == Some(*best));
-                if self.options.driven {
+                let tied = found.iter().filter(|(rank, _)| rank == best).map(|(_, at)| *at);
+                let moving: Vec<usize> = tied.filter(|at| self.options.driven && moves(*at)).collect();
+                if moving.len() > 1 {
                     return Err(self.ambiguous("the input", titles, "data.input"));
                 }
-                said.push(format!(
-                    "{titles} could each be the input and none was taken; name one with `data.input`"
-                ));
-                None
+                if moving.is_empty() {
+                    said.push(format!(
+                        "{titles} could each be the input and none was taken; name one with `data.input`"
+                    ));
+                }
+                moving.first().map(|at| Pick { at: *at, because: BY_NAME })
             }
             [(_, at), ..] => Some(Pick { at: *at, because: BY_NAME }),
         };

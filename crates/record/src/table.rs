@@ -10,6 +10,7 @@ use crate::names::COUNTERS;
 use crate::reading::NO_SEPARATOR;
 use crate::roles::{Column, Kind, Pick};
 use crate::runs::{Run, runs};
+use crate::statistics::extremes;
 use crate::words::counted;
 use std::collections::BTreeSet;
 
@@ -119,6 +120,12 @@ impl<'a> Table<'a> {
     /// Returns the numbers in a column, without the cells that hold none.
     pub(crate) fn numbers(&self, at: usize, rows: &[(u64, Vec<&str>)]) -> Vec<f64> {
         rows.iter().filter_map(|(_, row)| self.layout.dialect.number(row.get(at)?)).collect()
+    }
+
+    /// Returns `true` if a column's numbers are not all the same.
+    pub(crate) fn moves(&self, at: usize, rows: &[(u64, Vec<&str>)]) -> bool {
+        let [lowest, highest] = extremes(&self.numbers(at, rows));
+        lowest < highest
     }
 
     /// Returns the column that numbers the rows, with the number of each counted from the first, if some are missing: by

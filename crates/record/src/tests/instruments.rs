@@ -26,6 +26,29 @@ fn labels_before_numbers_are_titles() {
     holds_the_swing(&read_with(text.trim_start(), columns), 1e-6);
 }
 
+/// A word that a program prints first is no title.
+#[test]
+fn words_before_the_numbers_are_no_titles() {
+    let text = file("10:12:30.990 -> Ready", |_, t, a| format!("10:12:31.010 -> {t:.2}, {a:.7}"));
+    holds_the_swing(&read(text.trim_start()), 1e-6);
+}
+
+#[test]
+fn units_in_a_row_of_their_own_need_not_all_be_known() {
+    let text = file("No;Time;Battery;angle;Humidity\n;s;V;deg;%RH", |at, t, a| {
+        format!("{at};{t:.2};12.1;{:.6};45.2", a.to_degrees())
+    });
+    holds_the_swing(&read(&text), 1e-6);
+}
+
+#[test]
+fn of_efforts_that_tie_one_that_stands_still_drives_nothing() {
+    let text = file("time_s,position0,effort0,effort1", |_, t, a| format!("{t:.2},{a:.7},0.0,0.0"));
+    let options = ReadOptions { driven: true, ..ReadOptions::default() };
+    let (record, _) = read_text("a.csv", text.as_bytes(), &options).unwrap();
+    assert!(record.input().is_none());
+}
+
 #[test]
 fn a_single_column_has_no_separator_and_no_header() {
     let text = file("", |_, _, a| format!("{a:.7}"));

@@ -27,6 +27,7 @@ impl Looked {
             self.no_swing(),
             several(&self.modes),
             self.uneven(),
+            self.one_sided(),
             self.hardly_known(),
             self.growth(),
         ];
@@ -68,6 +69,15 @@ impl Looked {
             from = from + shift,
             to = to + shift
         ))
+    }
+
+    /// Returns a remark if the values turn back at one level on one side.
+    fn one_sided(&self) -> Option<String> {
+        self.look.record.stands_on_one_side().then(|| {
+            "the values turn back at one level on one side, while those of the other fall: a magnitude, a rectified or a clipped \
+             signal does so. A magnitude has twice the frequency of its motion; name a column with a sign with --value"
+                .to_owned()
+        })
     }
 
     /// Returns a remark if the record comes to rest without a swing.
