@@ -62,7 +62,7 @@ const FIELDS: &[Field] = &[
     Field::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(100))
         .unit("steps")
         .meaning("Most steps on stretches of each length."),
-    Field::new("refit", Value::Boolean, Default::Boolean(true)).meaning(
+    Field::new("fit_validation", Value::Boolean, Default::Boolean(true)).meaning(
         "true: the chosen law is fitted once more, to training and validation part together; false: to the training part \
          alone.",
     ),
@@ -74,7 +74,7 @@ struct Settings {
     laws: Vec<String>,
     samples: usize,
     max_steps: u64,
-    refit: bool,
+    fit_validation: bool,
 }
 
 /// Lengths of the stretches of consecutive fits, in periods. The last fit is that of all parameters.
@@ -140,7 +140,7 @@ impl Learner for Settings {
             "no law applies: they need an input, and tanks positive levels; state others in laws".to_owned();
         let best = simplest(&candidates).and_then(|at| Some((tried.get_mut(at)?, candidates.get(at)?)));
         let (search, chosen) = best.ok_or(LearnError::Unsolvable { what: ID, problem: none })?;
-        let validation = Some(chosen.error()).filter(|error| self.refit && error.is_finite());
+        let validation = Some(chosen.error()).filter(|error| self.fit_validation && error.is_finite());
         if validation.is_some() {
             self.refit(search, data, &mut trace)?;
         }

@@ -156,11 +156,11 @@ fn a_duffing_oscillator_is_preferred_to_a_longer_polynomial_and_extrapolates() {
 #[test]
 fn a_refitted_law_states_the_error_by_which_it_was_chosen() {
     let data = crate::testing::data_set(&crate::testing::drag_and_cubic(), true, 2e-3);
-    let fit = |refit: &str| {
-        let quick = ["max_steps=3", "laws=polynomial-3", refit];
+    let fit = |setting: &str| {
+        let quick = ["max_steps=3", "laws=polynomial-3", setting];
         learner("grey-box", &quick).fit(&data, &context()).unwrap().model
     };
-    let (before, after) = (fit("refit=false"), fit("refit=true"));
+    let (before, after) = (fit("fit_validation=false"), fit("fit_validation=true"));
     assert_eq!(before.validation(), None);
     assert_eq!(validation_error(after.as_ref(), &data), validation_error(before.as_ref(), &data));
     assert_ne!(runs(after.as_ref(), &data), runs(before.as_ref(), &data));
