@@ -117,6 +117,9 @@ fn every_shipped_configuration_runs() {
             quick.extend(all.then_some("learn.learners=sindy"));
             // The repaired simulator needs a diagnosis of each system: a test in `learning::` has one.
             quick.extend(all.then_some("learn.baselines=persistence,nominal,recalibrated,arx"));
+            // Networks train on the benchmarks' records for minutes; their own configurations run them.
+            let is_benchmark = path.to_str().unwrap().contains("benchmark");
+            quick.extend(is_benchmark.then_some("learn.learners=sindy,grey-box"));
             // The problems of the table are those of the other two files.
             quick.extend(path.ends_with("table.toml").then_some("learn.problems=drag-cubic"));
             let (code, result, _) = result(&quick);

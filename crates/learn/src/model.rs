@@ -107,6 +107,12 @@ pub trait Model: Send + Sync {
         None
     }
 
+    /// Returns the free-run error on the validation part, in the unit of the positions, of the model as it was chosen;
+    /// `None` unless the chosen model was fitted to that part afterwards, so that its own error there tells nothing.
+    fn validation(&self) -> Option<f64> {
+        None
+    }
+
     /// Returns the law as text; `None` if the model is not an equation.
     fn equation(&self) -> Option<String> {
         None

@@ -21,7 +21,7 @@ pub(crate) fn fact(name: &'static str, value: impl Into<String>) -> Fact {
 /// Table of methods and their scores on held-out records or peaks.
 pub(crate) struct ScoreTable {
     /// Titles of the columns, that of the methods first.
-    pub(crate) columns: Vec<&'static str>,
+    pub(crate) columns: Vec<String>,
     pub(crate) rows: Vec<ScoreRow>,
 }
 

@@ -121,21 +121,30 @@ pub fn run_error(run: &Run) -> f64 {
 }
 
 /// Returns the root mean square error of free runs over the validation part, without bands; infinite if a run
-/// fails.
+/// fails. For a model that was fitted to that part after it had been chosen, the error from before.
 #[must_use]
 pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
-    let (mut sum, mut count) = (0.0, 0_usize);
+    model.validation().unwrap_or_else(|| root_mean(&validation_squares(model, data)))
+}
+
+/// Returns the square root of the mean; infinite if it is not a finite number.
+pub(crate) fn root_mean(squares: &[f64]) -> f64 {
+    finite((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+}
+
+/// Returns the squared errors of free runs over the validation part, one for each sample after the warm-ups;
+/// empty if a run fails.
+pub(crate) fn validation_squares(model: &dyn Model, data: &DataSet) -> Vec<f64> {
+    let mut squares = Vec::new();
     for part in &data.validation {
         let (now, end) = (data.warm_up_samples(part), part.len());
         let Ok(found) = model.free_run(&past(part, 0, now), &ahead(part, now, end)) else {
-            return f64::INFINITY;
+            return Vec::new();
         };
         let observed = &part.values()[now..];
-        sum += observed.iter().zip(&found.values).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        count += observed.len();
+        squares.extend(observed.iter().zip(&found.values).map(|(a, b)| (a - b).powi(2)));
     }
-    let error = (sum / count.max(1) as f64).sqrt();
-    if error.is_finite() { error } else { f64::INFINITY }
+    squares
 }
 
 /// Scores a model's free runs, and its single steps along the test part.

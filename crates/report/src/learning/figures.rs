@@ -1,14 +1,13 @@
 //! Plots of a data set: free runs against the record, learned torques against the true ones, errors by
 //! method.
 
-use results::{LearnKind, LearnProblem, LearnRow, LearnSeriesRow, LearnTorqueRow};
+use super::residuals;
+use super::runs::{Drawn, drawn, named};
+use results::{LearnKind, LearnProblem, LearnRow, LearnTorqueRow};
 
 use crate::figures::{Figure, csv, figure, number};
 use crate::parse::Learning;
 use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
-
-/// Largest number of free runs drawn, those of the best methods.
-const MOST_RUNS: usize = 4;
 
 pub(super) fn figures(
     id: &str,
@@ -16,34 +15,16 @@ pub(super) fn figures(
     rows: &[&LearnRow],
     learning: &Learning,
 ) -> Vec<Figure> {
-    let mut all: Vec<Figure> = free_runs(id, problem, rows, &learning.runs).into_iter().collect();
+    let drawn = drawn(problem, rows, &learning.runs);
+    let mut all: Vec<Figure> = free_runs(id, problem, &drawn).into_iter().collect();
+    all.extend(residuals::figures(id, problem, &drawn));
     all.extend(errors(id, problem, rows));
     all.extend(torques(id, problem, rows, &learning.torques));
     all.extend(losses(id, problem, rows, learning));
     all
 }
 
-/// Returns the name of the data set under a plot; it always distinguishes simulated from measured data.
-fn named(problem: &LearnProblem) -> String {
-    format!("{} ({})", problem.title, crate::verdict::kind(problem.origin))
-}
-
-fn free_runs(
-    id: &str,
-    problem: &LearnProblem,
-    rows: &[&LearnRow],
-    runs: &[LearnSeriesRow],
-) -> Option<Figure> {
-    let of = |method: &str| -> Vec<&LearnSeriesRow> {
-        runs.iter().filter(|row| row.problem == problem.id && row.method == method).collect()
-    };
-    let drawn: Vec<(&LearnRow, Vec<&LearnSeriesRow>)> = rows
-        .iter()
-        .filter(|row| row.kind != LearnKind::Reference)
-        .map(|row| (*row, of(&row.id)))
-        .filter(|(_, found)| !found.is_empty())
-        .take(MOST_RUNS)
-        .collect();
+fn free_runs(id: &str, problem: &LearnProblem, drawn: &[Drawn<'_>]) -> Option<Figure> {
     let (_, first) = drawn.first()?;
     let record = first.first().map(|row| row.record.clone()).unwrap_or_default();
     let mut series = vec![Series {

@@ -1,6 +1,9 @@
 //! Page of a learning study: learners and baselines on records that were not used for training.
 
 mod figures;
+mod residuals;
+mod runs;
+mod scores;
 #[cfg(test)]
 mod tests;
 
@@ -11,22 +14,9 @@ use crate::figures::Figure;
 use crate::format::{fixed, quantity, significant};
 use crate::frame::{Frame, finish};
 use crate::parse::Learning;
-use crate::tables::{Fact, ScoreRow, ScoreTable, anchor, fact, whole};
+use crate::tables::{Fact, ScoreTable, anchor, fact, whole};
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
-
-/// Columns of a table of scores.
-const COLUMNS: [&str; 9] = [
-    "Method",
-    "Free run",
-    "× noise",
-    "Horizon (s)",
-    "One step",
-    "In 95 % band",
-    "Torque off",
-    "Numbers",
-    "Time (s)",
-];
 
 /// Explanation of the tables.
 const READING: &str = "Each method was given the start of a test record, its warm-up, and predicted the rest \
@@ -95,10 +85,7 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
         laws: methods.iter().filter_map(law).collect(),
         coefficients: methods.iter().flat_map(|row| coefficients(row)).collect(),
         figures: figures::figures(&id, problem, &methods, learning),
-        table: (!rows.is_empty()).then(|| ScoreTable {
-            columns: COLUMNS.to_vec(),
-            rows: rows.into_iter().map(score_row).collect(),
-        }),
+        table: (!rows.is_empty()).then(|| scores::table(problem, &rows)),
         id,
     }
 }
@@ -125,27 +112,6 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
     facts.extend(input.map(|does| fact("Input between its samples", does.to_owned())));
     facts.extend(problem.missing.iter().map(|missing| fact("Record with missing cells", missing.clone())));
     facts
-}
-
-fn score_row(row: &LearnRow) -> ScoreRow {
-    let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), |value| significant(value, 3));
-    // An ablation is a free run of an already trained model, so it has no one-step error and no training
-    // time.
-    let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
-    let cells = row.test.as_ref().map_or_else(Vec::new, |test| {
-        vec![
-            number(test.free_run_rmse),
-            number(test.over_noise),
-            significant(test.horizon_s, 3),
-            own(number(test.one_step_rmse)),
-            test.coverage_95.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 1))),
-            row.torque_error.map_or_else(String::new, |error| format!("{} %", significant(100.0 * error, 2))),
-            whole(row.parameters),
-            own(significant(row.seconds, 2)),
-        ]
-    });
-    let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());
-    ScoreRow { title: row.title.clone(), is_marked: row.kind == LearnKind::Learner, cells, reason }
 }
 
 fn coefficients(row: &LearnRow) -> Vec<CoefficientView<'_>> {

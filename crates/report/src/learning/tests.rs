@@ -1,7 +1,7 @@
 use crate::{RunTexts, render};
 use results::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnTest, Origin,
-    RESULT_SCHEMA, Reached,
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
+    LearnPublished, LearnResult, LearnRow, LearnTest, Origin, RESULT_SCHEMA, Reached,
 };
 use std::collections::BTreeMap;
 
@@ -42,6 +42,17 @@ fn row(id: &str, kind: LearnKind, error: Option<f64>) -> LearnRow {
 }
 
 fn page(learner: f64) -> String {
+    page_of(learner, Vec::new())
+}
+
+/// Renders a page; the learner has ten times its error on each stated part.
+fn page_of(learner: f64, parts: Vec<LearnPart>) -> String {
+    let errors =
+        |part: &LearnPart| LearnPartError { part: part.id.clone(), free_run_rmse: Some(10.0 * learner) };
+    let mut sindy = row("sindy", LearnKind::Learner, Some(learner));
+    if let Some(test) = sindy.test.as_mut() {
+        test.parts = parts.iter().map(errors).collect();
+    }
     let problem = LearnProblem {
         id: "swing".to_owned(),
         title: "A swing".to_owned(),
@@ -53,7 +64,7 @@ fn page(learner: f64) -> String {
         rate_hz: 50.0,
         period_s: 1.0,
         warm_up_s: 1.0,
-        parts: Vec::new(),
+        parts,
         noise: 1e-3,
         test_s: 9.0,
         input_hold: None,
@@ -66,7 +77,7 @@ fn page(learner: f64) -> String {
         data: problem.data,
         problems: vec![problem],
         results: vec![
-            row("sindy", LearnKind::Learner, Some(learner)),
+            sindy,
             row("arx", LearnKind::Baseline, Some(0.1)),
             row("nominal", LearnKind::Baseline, None),
             row("sindy:at-zero", LearnKind::Ablation, Some(0.7)),
@@ -92,6 +103,7 @@ fn a_page_shows_scores_coefficients_and_plots_and_says_where_a_row_failed() {
         "needs &#60;a&#62; nominal simulator",
         "Free runs: A swing (simulated)",
         "Learned torque: A swing (simulated)",
+        "What the free runs miss: A swing (simulated)",
         "Training: A swing (simulated)",
         "problem-swing-errors",
         "Method sindy:at-zero",
@@ -120,4 +132,17 @@ fn an_ablation_is_a_row_and_in_no_plot() {
 #[test]
 fn a_learner_behind_a_baseline_is_no_success() {
     assert!(page(0.2).contains("Learning helps nowhere"));
+}
+
+#[test]
+fn a_table_has_a_column_for_each_test_part_and_a_row_for_each_method_of_others() {
+    let published = vec![LearnPublished { name: "Others".to_owned(), free_run_rmse: 0.0123 }];
+    let page = page_of(0.002, vec![LearnPart { id: "sweep".to_owned(), samples: 500, published }]);
+    for words in [">sweep (rad)<", ">Validation (rad)<", ">0.0200<", ">Others (published)<", ">0.0123<"] {
+        assert!(page.contains(words), "no {words}");
+    }
+    let table = page.split("<table").nth(1).unwrap().split("</table>").next().unwrap();
+    let columns = table.matches("<th scope=\"col\"").count();
+    let rows = table.split("<tr").skip(2).filter(|row| !row.contains("colspan"));
+    rows.for_each(|row| assert_eq!(1 + row.matches("<td>").count(), columns, "{row}"));
 }

@@ -47,7 +47,7 @@ fn problem(row: &ProblemRow) -> Vec<String> {
 
 fn table(table: &ScoreTable) -> String {
     let columns: Vec<(&str, bool)> =
-        table.columns.iter().enumerate().map(|(index, title)| (*title, index > 0)).collect();
+        table.columns.iter().enumerate().map(|(index, title)| (title.as_str(), index > 0)).collect();
     let rows = table.rows.iter().map(|row| {
         let title = escape(&row.title);
         let mut cells = vec![if row.is_marked { format!("**{title}**") } else { title }];

@@ -54,7 +54,7 @@ pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     let place = study.methods.iter().position(|row| error(row) >= exponential.extrapolation.rms_log_error);
     let mut rows: Vec<ScoreRow> = study.methods.iter().map(|row| view(row, has_truth)).collect();
     rows.insert(place.unwrap_or(rows.len()), reference);
-    ScoreTable { columns, rows }
+    ScoreTable { columns: columns.into_iter().map(str::to_owned).collect(), rows }
 }
 
 /// Returns the error by which rows are ordered.

@@ -1,7 +1,7 @@
 //! Fits of a law's parameters and start states to free runs, by Levenberg–Marquardt.
 
-use super::law::{Law, State};
-use super::run::{Motion, Piece, motion};
+use super::law::State;
+use super::run::{Motion, Piece, Runnable};
 use crate::LearnError;
 use crate::flow::Running;
 use nalgebra::{DMatrix, DVector};
@@ -17,7 +17,7 @@ pub(super) struct Point {
 
 /// Free runs to be fitted.
 pub(super) struct Runs<'a> {
-    pub(super) law: &'a dyn Law,
+    pub(super) law: &'a dyn Runnable,
     pub(super) pieces: &'a [Piece],
     pub(super) running: &'a Running,
     /// Typical sizes of the parameters.
@@ -60,7 +60,7 @@ impl Runs<'_> {
     /// Returns the free run of every piece.
     pub(super) fn motions(&self, point: &Point) -> Vec<Motion> {
         let run = |(piece, start): (&Piece, &State)| {
-            motion(self.law, &point.parameters, *start, piece, self.running)
+            self.law.motion(&point.parameters, *start, piece, self.running)
         };
         self.pieces.iter().zip(&point.starts).map(run).collect()
     }

@@ -1,8 +1,9 @@
 //! Laws by name.
 
 use super::bouc_wen::BoucWen;
-use super::law::Law;
+use super::duffing::Duffing;
 use super::polynomial::Polynomial;
+use super::run::Runnable;
 use super::two_tanks::TwoTanks;
 use crate::data::DataSet;
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Form {
     /// Polynomial acceleration.
     Polynomial(Polynomial),
+    /// Duffing oscillator of a circuit.
+    Duffing(Duffing),
     /// Oscillator with Bouc–Wen hysteresis.
     BoucWen(BoucWen),
     /// Two tanks in cascade.
@@ -20,12 +23,13 @@ pub(super) enum Form {
 }
 
 /// Names of the laws in configurations.
-pub(super) const NAMES: &[&str] = &["polynomial-3", "polynomial-5", "bouc-wen", "two-tanks"];
+pub(super) const NAMES: &[&str] = &["duffing", "polynomial-3", "polynomial-5", "bouc-wen", "two-tanks"];
 
 impl Form {
     /// Returns the law with a name, for a data set; `None` for an unknown name.
     pub(super) fn named(name: &str, data: &DataSet) -> Option<Self> {
         Some(match name {
+            "duffing" => Self::Duffing(Duffing::new(data)),
             "polynomial-3" => Self::Polynomial(Polynomial::new(3, data)),
             "polynomial-5" => Self::Polynomial(Polynomial::new(5, data)),
             "bouc-wen" => Self::BoucWen(BoucWen {}),
@@ -35,9 +39,10 @@ impl Form {
     }
 
     /// Returns the law.
-    pub(super) fn law(&self) -> &dyn Law {
+    pub(super) fn law(&self) -> &dyn Runnable {
         match self {
             Self::Polynomial(law) => law,
+            Self::Duffing(law) => law,
             Self::BoucWen(law) => law,
             Self::TwoTanks(law) => law,
         }

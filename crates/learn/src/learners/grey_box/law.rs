@@ -3,7 +3,8 @@
 use crate::Place;
 use crate::data::{DataSet, Trajectory};
 
-/// State of a law. The first entry is the observed quantity; a law with two states leaves the last at 0.
+/// State of a law. The first entry is the observed quantity, unless the law says otherwise; a law with two states
+/// leaves the last at 0.
 pub(super) type State = [f64; 3];
 
 /// Start of a search: parameters, and the part of them that is fitted first, beside the start states.
@@ -47,6 +48,11 @@ pub(super) trait Law: Send + Sync {
     /// Returns the state after a step, within its limits.
     fn limited(&self, _parameters: &[f64], state: State) -> State {
         state
+    }
+
+    /// Returns the observed quantity in a state.
+    fn observed(&self, _parameters: &[f64], [observed, ..]: State) -> f64 {
+        observed
     }
 
     /// Returns the hidden state of which a start search needs a typical value; 0 if there is none.

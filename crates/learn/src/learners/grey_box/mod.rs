@@ -3,13 +3,16 @@
 //! A law gives the rates of its states, of which one is observed and others may be hidden: the hysteretic force of
 //! Bouc and Wen, the level of an upper tank. Its parameters and the start state of each training part minimize the
 //! error of free runs (output error) by Levenberg–Marquardt: first those of a short stretch, then those of a longer
-//! one, and in the end those of the whole part. Every law is fitted from several starts; the fit with the smallest
-//! error on the validation part is kept.
+//! one, and in the end those of the whole part. Every law is fitted from several starts. Of the fits whose error on the
+//! validation part is the smallest within its uncertainty, the one with the fewest parameters is kept, and fitted once
+//! more to training and validation part together.
 //!
 //! Ljung, System Identification, 2nd ed. 1999, section 7.2 (output error); Bohlin, Practical Grey-box Process
 //! Identification, 2006.
 
 mod bouc_wen;
+mod choice;
+mod duffing;
 mod fit;
 mod form;
 mod law;
@@ -22,8 +25,9 @@ mod two_tanks;
 
 use crate::data::DataSet;
 use crate::flow::Running;
-use crate::judge::validation_error;
+use crate::judge::validation_squares;
 use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Step};
+use choice::{Candidate, simplest};
 use estimator::Reached;
 use fit::{Point, Runs};
 use form::{Form, NAMES};
@@ -39,8 +43,8 @@ use std::ops::ControlFlow;
 pub const ENTRY: Entry = Entry {
     id: ID,
     title: "Grey-box law",
-    summary: "Fits stated laws, with hidden states where they have any, to free runs and keeps the one that predicts the \
-              validation part best.",
+    summary: "Fits stated laws, with hidden states where they have any, to free runs and keeps the simplest of those that \
+              predict the validation part best.",
     reference: "Bohlin, Practical Grey-box Process Identification, Springer 2006",
     kind: Kind::Regressor,
     fields: FIELDS,
@@ -58,6 +62,10 @@ const FIELDS: &[Field] = &[
     Field::new("max_steps", Value::Integer { min: 0, max: 1_000_000 }, Default::Integer(100))
         .unit("steps")
         .meaning("Most steps on stretches of each length."),
+    Field::new("fit_validation", Value::Boolean, Default::Boolean(true)).meaning(
+        "true: the chosen law is fitted once more, to training and validation part together; false: to the training part \
+         alone.",
+    ),
 ];
 
 /// The learner. Ranges and defaults are stated in the registry's fields.
@@ -66,6 +74,7 @@ struct Settings {
     laws: Vec<String>,
     samples: usize,
     max_steps: u64,
+    fit_validation: bool,
 }
 
 /// Lengths of the stretches of consecutive fits, in periods. The last fit is that of all parameters.
@@ -116,22 +125,27 @@ impl Learner for Settings {
             }
         }
         let least = searches.iter().map(|search| search.rms).fold(f64::INFINITY, f64::min);
-        let mut best: Option<(f64, GreyBox, Reached)> = None;
+        let (mut tried, mut candidates) = (Vec::new(), Vec::new());
         for mut search in searches.into_iter().filter(|search| search.rms <= GIVEN_UP * least) {
             for length in 1..LENGTHS.len() {
                 self.stretch(&mut search, length, data, &mut trace)?;
             }
-            let model = search.model(data);
-            let validation = validation_error(&model, data);
-            trace.chosen(search.name, validation);
-            if best.as_ref().is_none_or(|(least, ..)| validation < *least) {
-                best = Some((validation, model, search.reached));
-            }
+            let squares = validation_squares(&search.model(data, None), data);
+            let candidate = Candidate { parameters: search.point.parameters.len(), squares };
+            trace.chosen(search.name, candidate.error());
+            candidates.push(candidate);
+            tried.push(search);
         }
         let none =
             "no law applies: they need an input, and tanks positive levels; state others in laws".to_owned();
-        let (_, model, reached) = best.ok_or(LearnError::Unsolvable { what: ID, problem: none })?;
-        Ok(Fitted { model: Box::new(model), reached, steps: trace.steps })
+        let best = simplest(&candidates).and_then(|at| Some((tried.get_mut(at)?, candidates.get(at)?)));
+        let (search, chosen) = best.ok_or(LearnError::Unsolvable { what: ID, problem: none })?;
+        let validation = Some(chosen.error()).filter(|error| self.fit_validation && error.is_finite());
+        if validation.is_some() {
+            self.refit(search, data, &mut trace)?;
+        }
+        let model = search.model(data, validation);
+        Ok(Fitted { model: Box::new(model), reached: search.reached, steps: trace.steps })
     }
 }
 
@@ -152,19 +166,36 @@ impl<'a> Search<'a> {
         Self { name, point, hidden, rms, reached, form, guess }
     }
 
-    fn model(&self, data: &DataSet) -> GreyBox {
+    /// Returns the law as a model. `validation` is the error on the validation part before the law was fitted to it.
+    fn model(&self, data: &DataSet, validation: Option<f64>) -> GreyBox {
         let about = About {
             form: self.form.clone(),
             running: Running::new(data, data.noise),
             state_sizes: self.form.law().sizes(data),
             spread: data.scale.position,
             unit: data.unit.clone(),
+            validation,
         };
         GreyBox::new(about, self.point.parameters.clone(), self.hidden)
     }
 }
 
 impl Settings {
+    /// Fits a law to the whole training and validation parts together.
+    fn refit(
+        &self,
+        search: &mut Search<'_>,
+        data: &DataSet,
+        trace: &mut Trace<'_>,
+    ) -> Result<(), LearnError> {
+        let model = search.model(data, None);
+        for part in &data.validation {
+            search.point.starts.push(model.start(&part.part(0, data.warm_up_samples(part)))?);
+        }
+        let train = [data.train.as_slice(), &data.validation].concat();
+        self.stretch(search, LENGTHS.len() - 1, &DataSet { train, ..data.clone() }, trace)
+    }
+
     /// Fits the starts of the training parts, up to one of the [`LENGTHS`].
     fn stretch(
         &self,

@@ -3,7 +3,7 @@
 use super::fit::{Point, Runs};
 use super::form::Form;
 use super::law::State;
-use super::run::{Piece, motion};
+use super::run::Piece;
 use crate::data::Trajectory;
 use crate::flow::Running;
 use crate::{Ahead, Coefficient, LearnError, Model, Past, Place, Predicted, Stored, Tensor, Torque};
@@ -32,6 +32,9 @@ pub(super) struct About {
     pub(super) spread: f64,
     /// Unit of the positions.
     pub(super) unit: String,
+    /// Error on the validation part of the law as it was chosen, if it was fitted to that part afterwards.
+    #[serde(default)]
+    pub(super) validation: Option<f64>,
 }
 
 /// Largest number of steps of a search for a start state.
@@ -66,7 +69,7 @@ impl GreyBox {
     }
 
     /// Fits the state at the first sample of a past.
-    fn start(&self, past: &Trajectory) -> Result<State, LearnError> {
+    pub(super) fn start(&self, past: &Trajectory) -> Result<State, LearnError> {
         let About { form, running, state_sizes, spread, .. } = &self.about;
         let piece = Piece::new(past, running)?;
         let runs = Runs {
@@ -93,7 +96,7 @@ impl Model for GreyBox {
         let times = [past.times_s, ahead.times_s].concat();
         let input = past.input.zip(ahead.input).map(|(before, after)| [before, after].concat());
         let whole = Trajectory::new("whole", times.clone(), times, input)?;
-        let found = motion(form.law(), &self.parameters, start, &Piece::new(&whole, running)?, running);
+        let found = form.law().motion(&self.parameters, start, &Piece::new(&whole, running)?, running);
         if let Some(time_s) = found.diverged_s {
             return Err(LearnError::Diverged { time_s, bound: running.bound });
         }
@@ -113,6 +116,10 @@ impl Model for GreyBox {
     fn torque(&self, place: &Place) -> Option<Torque> {
         let value = self.about.form.law().acceleration(&self.parameters, place)?;
         Some(Torque { value, std: None })
+    }
+
+    fn validation(&self) -> Option<f64> {
+        self.about.validation
     }
 
     fn equation(&self) -> Option<String> {

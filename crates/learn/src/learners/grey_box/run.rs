@@ -40,38 +40,40 @@ pub(super) struct Motion {
     pub(super) diverged_s: Option<f64>,
 }
 
-/// Runs a law from a start state over the times of a piece.
-pub(super) fn motion(
-    law: &dyn Law,
-    parameters: &[f64],
-    start: State,
-    piece: &Piece,
-    running: &Running,
-) -> Motion {
-    let mut state = law.limited(parameters, start);
-    let [observed, ..] = state;
-    let mut found = Motion { positions: vec![observed], hidden: law.hidden(state), diverged_s: None };
-    let pairs = piece.times_s.iter().zip(piece.times_s.iter().skip(1)).enumerate();
-    for (number, (from, to)) in pairs {
-        // Without an input nothing drives the system.
-        let course = piece.input.as_ref().map_or([0.0; 4], |input| input.cubic(number));
-        state = interval(law, parameters, state, (to - from, course), running.longest_step_s);
-        let [observed, ..] = state;
-        if observed.is_nan() || observed.abs() > running.bound {
-            // Only used in an error message.
-            found.diverged_s = Some(to - piece.times_s.first().copied().unwrap_or_default());
-            found.positions.resize(piece.times_s.len(), running.bound);
-            return found;
+/// Law that can be run from sample to sample. A method of the trait, so that the steps are compiled for each law.
+pub(super) trait Runnable: Law {
+    /// Runs the law from a start state over the times of a piece.
+    fn motion(&self, parameters: &[f64], start: State, piece: &Piece, running: &Running) -> Motion;
+}
+
+impl<L: Law> Runnable for L {
+    fn motion(&self, parameters: &[f64], start: State, piece: &Piece, running: &Running) -> Motion {
+        let mut state = self.limited(parameters, start);
+        let first = self.observed(parameters, state);
+        let mut found = Motion { positions: vec![first], hidden: self.hidden(state), diverged_s: None };
+        found.positions.reserve(piece.times_s.len());
+        let pairs = piece.times_s.iter().zip(piece.times_s.iter().skip(1)).enumerate();
+        for (number, (from, to)) in pairs {
+            // Without an input nothing drives the system.
+            let course = piece.input.as_ref().map_or([0.0; 4], |input| input.cubic(number));
+            state = interval(self, parameters, state, (to - from, course), running.longest_step_s);
+            let observed = self.observed(parameters, state);
+            if observed.is_nan() || observed.abs() > running.bound {
+                // Only used in an error message.
+                found.diverged_s = Some(to - piece.times_s.first().copied().unwrap_or_default());
+                found.positions.resize(piece.times_s.len(), running.bound);
+                return found;
+            }
+            found.positions.push(observed);
+            found.hidden += self.hidden(state);
         }
-        found.positions.push(observed);
-        found.hidden += law.hidden(state);
+        found
     }
-    found
 }
 
 /// Advances a state over a sampling interval. The input is a polynomial in the time.
 fn interval(
-    law: &dyn Law,
+    law: &impl Law,
     parameters: &[f64],
     mut state: State,
     (length, [a, b, c, d]): (f64, [f64; 4]),
@@ -87,11 +89,10 @@ fn interval(
         let k2 = law.rate(parameters, moved(state, k1, 0.5 * step), middle);
         let k3 = law.rate(parameters, moved(state, k2, 0.5 * step), middle);
         let k4 = law.rate(parameters, moved(state, k3, step), end);
-        let mean = std::array::from_fn(|at| {
-            let of = |own: State| own.get(at).copied().unwrap_or(f64::NAN);
-            (of(k1) + 2.0 * of(k2) + 2.0 * of(k3) + of(k4)) / 6.0
-        });
-        state = law.limited(parameters, moved(state, mean, step));
+        let mean = |[a, b, c, d]: [f64; 4]| (a + 2.0 * b + 2.0 * c + d) / 6.0;
+        let ([x1, y1, z1], [x2, y2, z2], [x3, y3, z3], [x4, y4, z4]) = (k1, k2, k3, k4);
+        let slope = [mean([x1, x2, x3, x4]), mean([y1, y2, y3, y4]), mean([z1, z2, z3, z4])];
+        state = law.limited(parameters, moved(state, slope, step));
     }
     state
 }

@@ -2,7 +2,7 @@
 //! learner.
 
 use crate::data::{DataSet, Making, Parts, Trajectory};
-use crate::judge::{runs, score_of_runs};
+use crate::judge::{runs, score_of_runs, validation_error};
 use crate::testing::{context, learner, making};
 use dynamics::Hold;
 use rand_distr::{Distribution, Normal};
@@ -129,6 +129,43 @@ fn two_tanks_are_found_with_their_overflow() {
             model.equation()
         );
     }
+}
+
+/// Swings twice as wide as in training: a polynomial of fifth degree fits the training part as well, and is wrong there.
+#[test]
+fn a_duffing_oscillator_is_preferred_to_a_longer_polynomial_and_extrapolates() {
+    let rate = |[x, v, _]: &mut [f64; 3], u: f64| {
+        let bent = 0.1 * (*v / 0.3).tanh();
+        [*v, 3.0 * u - 1.5 * *v - 320.0 * *x - 4000.0 * x.powi(3) + bent, 0.0]
+    };
+    let made = |seed: u64, size: f64| {
+        let drive = input(seed, [0.5, 6.0], 24.0);
+        record(&format!("record-{seed}"), 0.02, move |time| size * drive(time), 1e-4, [0.0; 3], rate)
+    };
+    let data = data_set([made(1, 0.5), made(2, 0.5), made(3, 1.0)], 0.35, "m");
+    let fitted = learner("grey-box", &["laws=polynomial-5,duffing"]).fit(&data, &context()).unwrap();
+    let model = fitted.model.as_ref();
+    assert_eq!(model.parameters(), 12);
+    let cubic = coefficient(model, "theta^3");
+    assert!((cubic / -4000.0 - 1.0).abs() < 0.05, "{cubic}");
+    let score = score_of_runs(&runs(model, &data), &data);
+    assert!(score.over_noise < 3.0, "{score:?}");
+}
+
+/// A law that has seen the validation part tells its error from before.
+#[test]
+fn a_refitted_law_states_the_error_by_which_it_was_chosen() {
+    let data = crate::testing::data_set(&crate::testing::drag_and_cubic(), true, 2e-3);
+    let fit = |setting: &str| {
+        let quick = ["max_steps=3", "laws=polynomial-3", setting];
+        learner("grey-box", &quick).fit(&data, &context()).unwrap().model
+    };
+    let (before, after) = (fit("fit_validation=false"), fit("fit_validation=true"));
+    assert_eq!(before.validation(), None);
+    assert_eq!(validation_error(after.as_ref(), &data), validation_error(before.as_ref(), &data));
+    assert_ne!(runs(after.as_ref(), &data), runs(before.as_ref(), &data));
+    let restored = super::GreyBox::restored(&after.stored().unwrap()).unwrap();
+    assert_eq!(validation_error(&restored, &data), validation_error(before.as_ref(), &data));
 }
 
 /// The test part is nobody's business until the end: a learner that gets none gives the same model.
