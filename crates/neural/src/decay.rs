@@ -7,7 +7,6 @@
 use crate::device::{tensor, values};
 use crate::flat::{flat_gradient, named_parameters, with_parameters};
 use crate::lbfgs::{Lbfgs, Smooth};
-use crate::minimum::{Minimum, StopReason};
 use crate::sequence::Sequence;
 use crate::weights::to_safetensors;
 use burn::module::Module;
@@ -16,6 +15,7 @@ use envelope::Envelope;
 use estimator::{
     Estimate, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Stop, Uncertainty,
 };
+use least_squares::{Minimum, StopReason};
 use nalgebra::DVector;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -321,13 +321,13 @@ fn stop(minimum: &Minimum, slope: f64) -> Stop {
 mod tests {
     use super::{Code, Encoder, Reconstruction, stop};
     use crate::device::device;
-    use crate::minimum::{Minimum, StopReason};
     use crate::sequence::Sequence;
     use burn::module::Module;
     use burn::nn::{Initializer, Linear, LinearConfig};
     use burn::tensor::{Device, Tensor};
     use envelope::Envelope;
     use estimator::{Cancel, FitContext, FitError, Reached, Silent};
+    use least_squares::{Minimum, StopReason};
     use nalgebra::DVector;
     use seed::Seed;
 

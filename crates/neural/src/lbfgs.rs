@@ -7,7 +7,7 @@
 //! Reference: Nocedal, Mathematics of Computation 35 (1980) 773; Hager, Zhang, SIAM J. Optim. 16 (2005) 170,
 //! section 4.
 
-use crate::minimum::{Iteration, Minimum, StopReason};
+use least_squares::{Iteration, Minimum, StopReason};
 use nalgebra::DVector;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -212,7 +212,7 @@ fn line_search<P: Smooth>(
 #[cfg(test)]
 mod tests {
     use super::{Lbfgs, Smooth};
-    use crate::minimum::StopReason;
+    use least_squares::StopReason;
     use nalgebra::DVector;
     use std::convert::Infallible;
     use std::ops::ControlFlow;

@@ -37,7 +37,7 @@ impl Estimator for NeuralOdeConfig {
         };
         // λ of the current state: a rejected step leaves both unchanged.
         let mut told: Option<(DVector<f64>, f64)> = None;
-        let minimum = method.minimize_resumably(&objective, self.start(context), context, |state| {
+        let minimum = method.minimize(&objective, &self.start(context), context, |state| {
             let known = told.take().filter(|(of, _)| of == state.parameters);
             let decay_rate = known.map_or_else(
                 || {

@@ -43,7 +43,7 @@ impl Estimator for PinnConfig {
             loss_tolerance: self.loss_tolerance,
         };
         let phase = format!("Levenberg-Marquardt, physics weight {}", self.physics_weight);
-        let minimum = method.minimize_resumably(&objective, self.start(context), context, |state| {
+        let minimum = method.minimize(&objective, &self.start(context), context, |state| {
             context.observe(&Step {
                 step: state.step,
                 planned: method.max_steps,
