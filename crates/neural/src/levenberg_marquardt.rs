@@ -3,10 +3,12 @@
 use estimator::{FitContext, FitError, Reached, Stop};
 use least_squares::{Iteration, LeastSquares, Method, Minimum, State, StopReason};
 use nalgebra::DVector;
+use serde::Deserialize;
+use settings::{Default, Field, Kind};
 use std::ops::ControlFlow;
 
 /// Settings of the method.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct LevenbergMarquardt {
     /// Largest number of steps, including rejected ones.
     pub max_steps: u64,
@@ -16,6 +18,25 @@ pub struct LevenbergMarquardt {
 }
 
 impl LevenbergMarquardt {
+    /// Returns the key of the largest number of steps with its default and the default's source.
+    #[must_use]
+    pub const fn max_steps(default: i64, source: &'static str) -> Field {
+        Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(default))
+            .meaning("Most Levenberg-Marquardt steps.")
+            .source(source)
+    }
+
+    /// Returns the key of the tolerance with its default and the default's source.
+    #[must_use]
+    pub const fn loss_tolerance(default: f64, source: &'static str) -> Field {
+        Field::new("loss_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(default))
+            .meaning(
+                "Training has converged when a step lowers the loss by a smaller share of itself than \
+                    this.",
+            )
+            .source(source)
+    }
+
     /// Minimizes a sum of squares like [`Method::minimize`], but stores its state through the context and resumes
     /// from a stored one, bit for bit as if it had never stopped.
     ///
