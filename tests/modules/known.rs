@@ -17,5 +17,4 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ),
     ("oracle", "classical::trust_region::minimize", "one iteration of a published method, in its order"),
     ("record", "clock::decide", "one question after another, each with its sentence"),
-    ("symbolic", "constants::fit_constants", "one iteration of a published method, in its order"),
 ];
