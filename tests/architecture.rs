@@ -9,7 +9,7 @@ use std::process::Command;
 /// the test, so that every new crate gets a layer.
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
-        "record" | "seed" | "settings" | "dynamics" => 0,
+        "record" | "seed" | "settings" | "dynamics" | "least-squares" => 0,
         "envelope" | "export" | "results" | "robot" | "truth" => 1,
         "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
@@ -151,7 +151,7 @@ fn only_who_makes_or_scores_records_reaches_the_truth() {
 fn the_oracle_reaches_nothing_that_estimators_compute_with() {
     let reached = reach("oracle");
     assert!(reached.contains("linfa-linear"), "cargo tree gave {reached:?}");
-    for forbidden in ["burn", "neural", "estimator", "experiment", "runs"] {
+    for forbidden in ["burn", "neural", "least-squares", "estimator", "experiment", "runs"] {
         assert!(!reached.contains(forbidden), "the oracle reaches {forbidden}");
     }
     // The envelope smooths with nalgebra; the oracle itself must not solve with it.

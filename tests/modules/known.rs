@@ -6,7 +6,6 @@ pub(super) const TANGLED: &[&str] = &["learn", "trainer", "trials"];
 /// Functions of more than 60 lines, by crate, with the reason.
 pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("bayesian", "fit::by_sampling", "one run of the sampler from its start to its answer"),
-    ("envelope-matching", "fit::minimize", "one iteration of a published method, in its order"),
     ("gaussian-process", "fit::train", "one loop over the steps of a training"),
     ("gaussian-process", "likelihood::slope", "one derivative in closed form, term by term"),
     ("neural", "amortized::training::train", "one loop over the steps of a training"),
@@ -18,5 +17,4 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ),
     ("oracle", "classical::trust_region::minimize", "one iteration of a published method, in its order"),
     ("record", "clock::decide", "one question after another, each with its sentence"),
-    ("symbolic", "constants::fit_constants", "one iteration of a published method, in its order"),
 ];

@@ -7,6 +7,7 @@
 use crate::observed::{input, order};
 use crate::scaled::{inverse, solve};
 use crate::{Basis, Estimated, LinearOscillator};
+use least_squares::{Descent, Method};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use record::{Clock, Record, noise_level};
 
@@ -43,10 +44,9 @@ impl Numbers {
     }
 }
 
-/// Most steps of the fit.
-const STEPS: usize = 40;
-/// Relative gain of a step that ends the fit.
-const SETTLED: f64 = 1e-10;
+/// Method of the fit.
+const METHOD: Method =
+    Method { first: 1e-6, max_steps: 40, tolerance: 1e-10, max_damping: 1e7, ..Method::TENFOLD };
 /// Longest integration step, in radians of the natural frequency or of the damping.
 const LONGEST: f64 = 0.15;
 /// Most integration steps between two samples.
@@ -203,22 +203,14 @@ impl Problem {
 
     /// Fits all numbers from a stiffness and a damping; returns the sum of the squared residuals, and the oscillator.
     fn fitted(&self, start: [f64; 2]) -> Option<(f64, LinearOscillator)> {
-        let (mut numbers, mut sums) = self.best_of(start)?;
-        let mut lambda = 1e-6;
-        for _ in 0..STEPS {
-            let next = self.step(&sums, lambda).map(|step| numbers.moved(&step));
-            match next.and_then(|next| Some((next, self.sums(&next)?))) {
-                Some((next, found)) if found.rest < sums.rest => {
-                    let gain = 1.0 - found.rest / sums.rest;
-                    (numbers, sums, lambda) = (next, found, 0.1 * lambda);
-                    if gain < SETTLED {
-                        break;
-                    }
-                }
-                _ if lambda > 1e6 => break,
-                _ => lambda *= 10.0,
-            }
+        let mut best = self.best_of(start)?;
+        let mut descent = Descent::new(METHOD);
+        while let Ok(damping) = descent.next_damping() {
+            let next = self.step(&best.1, damping).map(|step| best.0.moved(&step));
+            let next = next.and_then(|next| Some((next, self.sums(&next)?)));
+            descent.advance(&mut best, next, |(_, sums)| sums.rest);
         }
+        let (numbers, sums) = best;
         Some((sums.rest, self.oscillator(&numbers, &sums)?))
     }
 

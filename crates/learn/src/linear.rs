@@ -1,30 +1,22 @@
 //! Dense linear algebra for the small matrices of a fit.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Solves a symmetric positive semidefinite system. Its diagonal is raised by a growing factor until the
+/// Decomposes a symmetric positive semidefinite matrix. Its diagonal is raised by a growing factor until the
 /// matrix is positive definite.
-pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let mut factor = 1e-14;
-    while factor < 1e-3 {
-        if let Some(decomposed) = raised(matrix, factor).cholesky() {
-            return Some(decomposed.solve(right));
-        }
-        factor *= 100.0;
-    }
-    None
+fn decomposed(matrix: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    let factors = std::iter::successors(Some(1e-14), |factor| Some(factor * 100.0));
+    factors.take_while(|factor| *factor < 1e-3).find_map(|factor| raised(matrix, factor).cholesky())
 }
 
-/// Inverts a symmetric positive semidefinite matrix, regularized as in [`solve`].
+/// Solves a symmetric positive semidefinite system, regularized as in [`decomposed`].
+pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    Some(decomposed(matrix)?.solve(right))
+}
+
+/// Inverts a symmetric positive semidefinite matrix, regularized as in [`decomposed`].
 pub(crate) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let mut factor = 1e-14;
-    while factor < 1e-3 {
-        if let Some(decomposed) = raised(matrix, factor).cholesky() {
-            return Some(decomposed.inverse());
-        }
-        factor *= 100.0;
-    }
-    None
+    Some(decomposed(matrix)?.inverse())
 }
 
 /// Returns the matrix with its diagonal multiplied by 1 + `factor`; a diagonal entry that is not positive

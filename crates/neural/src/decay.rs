@@ -7,7 +7,7 @@
 use crate::device::{tensor, values};
 use crate::flat::{flat_gradient, named_parameters, with_parameters};
 use crate::lbfgs::{Lbfgs, Smooth};
-use crate::minimum::{Minimum, StopReason};
+use crate::levenberg_marquardt::LevenbergMarquardt;
 use crate::sequence::Sequence;
 use crate::weights::to_safetensors;
 use burn::module::Module;
@@ -16,7 +16,10 @@ use envelope::Envelope;
 use estimator::{
     Estimate, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Stop, Uncertainty,
 };
+use least_squares::{Minimum, StopReason};
 use nalgebra::DVector;
+use serde::Deserialize;
+use settings::{Default, Field, Kind};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
@@ -61,20 +64,29 @@ pub struct Differentiated {
 }
 
 /// Options of a fit by reconstruction.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Reconstruction {
     /// Largest number of entries that the encoder reads; longer envelopes are [pooled](Sequence::pooled) for
     /// it. The loss always covers all peaks.
     pub longest_sequence: usize,
-    /// Largest number of optimizer steps.
-    pub max_steps: u64,
-    /// Number of curvature pairs that the optimizer stores.
-    pub memory: usize,
-    /// Gradient norm at convergence, relative to the initial norm.
-    pub gradient_tolerance: f64,
+    /// Settings of the optimizer.
+    #[serde(flatten)]
+    pub optimizer: Lbfgs,
 }
 
 impl Reconstruction {
+    /// Returns the key of the longest sequence with its largest value, its default and the default's source.
+    #[must_use]
+    pub const fn longest_sequence(max: i64, default: i64, source: &'static str) -> Field {
+        Field::new("longest_sequence", Kind::Integer { min: 3, max }, Default::Integer(default))
+            .unit("peaks")
+            .meaning(
+                "Most entries the network reads; a longer envelope is read as means over even runs of \
+                    neighboring peaks. The loss is over all peaks.",
+            )
+            .source(source)
+    }
+
     /// Trains an encoder from initial values on an envelope, and takes the estimate from its decoder.
     ///
     /// The uncertainty is that of a decoder with two outputs: the Laplace approximation in (c, r), whose
@@ -102,13 +114,9 @@ impl Reconstruction {
         let (start, most) = match context.is_at_zero() {
             // Held at zero: nothing is trained.
             true => (vec![0.0; start.len()], 0),
-            false => (start, self.max_steps),
+            false => (start, self.optimizer.max_steps),
         };
-        let method = Lbfgs {
-            max_steps: context.step_limit(most),
-            memory: self.memory,
-            gradient_tolerance: self.gradient_tolerance,
-        };
+        let method = Lbfgs { max_steps: context.step_limit(most), ..self.optimizer };
         let minimum = method.minimize(&objective, DVector::from_vec(start), |state| {
             context.observe(&Step {
                 step: state.step,
@@ -284,7 +292,6 @@ impl<E: Encoder> Smooth for Objective<'_, E> {
 const SLOPE_OF_ROUNDING: f64 = 1e-8;
 
 fn stop(minimum: &Minimum, slope: f64) -> Stop {
-    let steps = minimum.steps;
     let (reached, because) = match minimum.reason {
         StopReason::Settled => (
             Reached::Converged,
@@ -304,15 +311,9 @@ fn stop(minimum: &Minimum, slope: f64) -> Stop {
                  parameters; lower estimator.initial_scale or take another seed"
             ),
         ),
-        StopReason::StepsSpent => (
-            Reached::BudgetSpent,
-            format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps"),
-        ),
-        StopReason::NotFinite => (
-            Reached::Diverged,
-            format!("the loss is not finite after {steps} steps; lower estimator.initial_scale"),
-        ),
-        StopReason::Interrupted => (Reached::Interrupted, format!("interrupted after {steps} steps")),
+        StopReason::StepsSpent | StopReason::NotFinite | StopReason::Interrupted => {
+            return LevenbergMarquardt::stop(minimum);
+        }
     };
     Stop { reached, because }
 }
@@ -321,13 +322,14 @@ fn stop(minimum: &Minimum, slope: f64) -> Stop {
 mod tests {
     use super::{Code, Encoder, Reconstruction, stop};
     use crate::device::device;
-    use crate::minimum::{Minimum, StopReason};
+    use crate::lbfgs::Lbfgs;
     use crate::sequence::Sequence;
     use burn::module::Module;
     use burn::nn::{Initializer, Linear, LinearConfig};
     use burn::tensor::{Device, Tensor};
     use envelope::Envelope;
     use estimator::{Cancel, FitContext, FitError, Reached, Silent};
+    use least_squares::{Minimum, StopReason};
     use nalgebra::DVector;
     use seed::Seed;
 
@@ -391,8 +393,8 @@ mod tests {
         let head = LinearConfig::new(1, 2).with_bias(false).with_initializer(Initializer::Zeros);
         let encoder = Mean { head: head.init(&device) };
         let envelope = Envelope::new(vec![0.0, 1.0, 2.0], vec![2.0, 1.1, 0.0], 6.0).unwrap();
-        let training =
-            Reconstruction { longest_sequence: 10, max_steps: 50, memory: 5, gradient_tolerance: 1e-13 };
+        let optimizer = Lbfgs { max_steps: 50, memory: 5, gradient_tolerance: 1e-13 };
+        let training = Reconstruction { longest_sequence: 10, optimizer };
         let cancel = Cancel::new();
         let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
         let fit = |start| training.fit(&envelope, &context, &encoder, start, &device);

@@ -2,7 +2,7 @@
 //!
 //! Reference: MacKay, Neural Computation 4 (1992) 448.
 
-use crate::levenberg_marquardt::Linearized;
+use least_squares::Linearized;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Gaussian posterior about parameters that minimize a mean square over the peaks plus prior terms. Its
@@ -74,7 +74,7 @@ impl Laplace {
 #[cfg(test)]
 mod tests {
     use super::Laplace;
-    use crate::levenberg_marquardt::Linearized;
+    use least_squares::Linearized;
     use nalgebra::{DMatrix, DVector};
 
     #[test]

@@ -7,8 +7,10 @@
 //! Reference: Nocedal, Mathematics of Computation 35 (1980) 773; Hager, Zhang, SIAM J. Optim. 16 (2005) 170,
 //! section 4.
 
-use crate::minimum::{Iteration, Minimum, StopReason};
+use least_squares::{Iteration, Minimum, StopReason};
 use nalgebra::DVector;
+use serde::Deserialize;
+use settings::{Default, Field, Kind};
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
@@ -25,7 +27,7 @@ pub trait Smooth {
 }
 
 /// Settings of the method.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Lbfgs {
     /// Largest number of steps.
     pub max_steps: u64,
@@ -34,6 +36,26 @@ pub struct Lbfgs {
     /// Gradient norm at which the method has converged, relative to the initial norm. 0 continues until
     /// rounding errors dominate.
     pub gradient_tolerance: f64,
+}
+
+impl Lbfgs {
+    /// Key of the largest number of steps.
+    pub const MAX_STEPS: Field =
+        Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(200))
+            .meaning("Most L-BFGS steps.")
+            .source("several times what ten seeds take on the shipped record");
+    /// Key of the number of stored curvature pairs.
+    pub const MEMORY: Field = Field::new("memory", Kind::Integer { min: 1, max: 100 }, Default::Integer(10))
+        .meaning("Curvature pairs that L-BFGS remembers.")
+        .source("Nocedal, Wright, Numerical Optimization (2006), section 7.2: 3 to 20");
+    /// Key of the gradient norm at which the method has converged.
+    pub const GRADIENT_TOLERANCE: Field =
+        Field::new("gradient_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-13))
+            .meaning(
+                "Training has converged when the gradient has fallen to this share of its length at \
+                    the start.",
+            )
+            .source("a few roundings above what double precision leaves");
 }
 
 /// Relative change of the loss that counts as rounding.
@@ -212,7 +234,7 @@ fn line_search<P: Smooth>(
 #[cfg(test)]
 mod tests {
     use super::{Lbfgs, Smooth};
-    use crate::minimum::StopReason;
+    use least_squares::StopReason;
     use nalgebra::DVector;
     use std::convert::Infallible;
     use std::ops::ControlFlow;

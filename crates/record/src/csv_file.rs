@@ -39,8 +39,6 @@ struct Samples {
     /// Number of lines that hold only an input, among lines between which it is held.
     held_lines: usize,
     first_missing: Option<(u64, usize)>,
-    /// `true` if a column numbers the lines.
-    is_counted: bool,
 }
 
 /// Columns that are read.
@@ -52,8 +50,8 @@ struct Chosen {
     input: Option<Pick>,
     /// `true` if other runs stand beside this one, whose lines may go on after its last.
     is_run: bool,
-    /// Numbers of the rows by a column that counts them, if there is no time column.
-    counted: Option<Vec<usize>>,
+    /// Column that counts the rows, and their numbers by it, if there is no time column.
+    counter: Option<(Pick, Vec<usize>)>,
 }
 
 impl Samples {
@@ -97,8 +95,8 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     };
     let rows = table.chosen(filter.as_ref())?;
     let time = roles.time()?;
-    let (counter, counted) = if time.is_none() { table.counter(&rows).unzip() } else { (None, None) };
-    let places = time.or(counter);
+    let counter = if time.is_none() { table.counter(&rows) } else { None };
+    let places = time.or(counter.as_ref().map(|(pick, _)| *pick));
     let (value, also) = roles.value(places, &|at| Swing::of(&table.numbers(at, &rows)))?;
     let taken: Vec<usize> = [Some(value), places].into_iter().flatten().map(|pick| pick.at).collect();
     let (input, note) =
@@ -107,8 +105,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         return Err(fault);
     }
     let nanoseconds = time.and_then(|time| nanoseconds(&columns, time.at));
-    findings.extend(counter.map(|pick| numbered(table.title(pick.at), pick)));
-    let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some(), counted };
+    let chosen = Chosen { time, nanoseconds, value, input, is_run: run.is_some(), counter };
     let (mut samples, held) = read(&table, &chosen, &rows, asked.missing)?;
     samples.refuse_missing(&table, asked.missing)?;
     if time.is_some() {
@@ -141,7 +138,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let factors = [observed.factor, input_factor];
     // Stamps that run backward may belong to several interleaved series.
     let interleaved = |fault| filter.is_none().then(|| table.series(true)).flatten().unwrap_or(fault);
-    fill(&mut parsed, samples, &stamps, factors, (time.is_some(), asked)).map_err(interleaved)?;
+    fill(&mut parsed, samples, &stamps, factors, (&chosen, asked)).map_err(interleaved)?;
     Ok(parsed)
 }
 
@@ -151,9 +148,10 @@ fn fill(
     samples: Samples,
     stamps: &[f64],
     [factor, input_factor]: [f64; 2],
-    (stamped, asked): (bool, &CsvColumns),
+    (chosen, asked): (&Chosen, &CsvColumns),
 ) -> Result<(), Fault> {
-    let copies = if stamped { copies(stamps, &samples.values, &samples.input) } else { BTreeSet::new() };
+    let is_stamped = chosen.time.is_some();
+    let copies = if is_stamped { copies(stamps, &samples.values, &samples.input) } else { BTreeSet::new() };
     let of_run = one_after_another(stamps, asked.run.filter(|_| parsed.reading.run.is_none()))?;
     if let Some((part, finding)) = &of_run {
         parsed.findings.push(finding.clone());
@@ -181,7 +179,7 @@ fn fill(
     }
     let is_numbered = samples.missing_lines > 0 && asked.missing == Missing::Segment
         || samples.held_lines > 0
-        || samples.is_counted;
+        || chosen.counter.is_some();
     parsed.rows = is_numbered.then_some(numbers);
     Ok(())
 }
@@ -240,11 +238,6 @@ impl Observed {
     }
 }
 
-/// Returns a sentence on samples that a column places in time.
-fn numbered(title: &str, pick: Pick) -> String {
-    format!("`{title}` {}, of which some are missing, and placed them in time", pick.because)
-}
-
 /// Returns a sentence if duplicate lines were left out.
 fn copied(count: usize) -> Option<String> {
     let which = if count == 1 { "repeats" } else { "repeat" };
@@ -290,8 +283,7 @@ fn read(
     let needed = columns.iter().map(|at| at + 1).fold(0, usize::max);
     let times =
         chosen.time.into_iter().flat_map(|time| rows.iter().filter_map(move |(_, row)| row.get(time.at)));
-    let is_counted = chosen.counted.is_some();
-    let samples = Samples { order: DateOrder::of(times.copied()), is_counted, ..Samples::default() };
+    let samples = Samples { order: DateOrder::of(times.copied()), ..Samples::default() };
     let mut reader = Reader { table, chosen, treated, held, last_input: None, samples };
     let mut number = 0;
     for (at, (line, row)) in rows.iter().enumerate() {
@@ -306,7 +298,7 @@ fn read(
         if row.iter().skip(width).any(|field| !field.is_empty()) {
             return Err(Fault::ExtraFields { line: *line, found: row.len(), expected: width });
         }
-        let place = chosen.counted.as_ref().and_then(|numbers| numbers.get(at)).copied();
+        let place = chosen.counter.as_ref().and_then(|(_, numbers)| numbers.get(at)).copied();
         number += usize::from(reader.line(*line, place.unwrap_or(number), &columns, &cell)?);
     }
     Ok((reader.samples, finding))
@@ -430,10 +422,14 @@ fn stamps(
     let Some(time) = chosen.time else {
         let rate = asked.sample_rate_hz.unwrap_or(1.0);
         let place = |(index, number): (usize, &usize)| match asked.missing {
-            Missing::Drop if chosen.counted.is_none() => index as f64 / rate,
+            Missing::Drop if chosen.counter.is_none() => index as f64 / rate,
             _ => *number as f64 / rate,
         };
-        return (samples.numbers.iter().enumerate().map(place).collect(), None, Vec::new());
+        let counted = chosen.counter.iter().map(|(pick, _)| {
+            let title = table.title(pick.at);
+            format!("`{title}` {}, of which some are missing, and placed them in time", pick.because)
+        });
+        return (samples.numbers.iter().enumerate().map(place).collect(), None, counted.collect());
     };
     let heading = heading(table, time.at);
     let named = match (chosen.nanoseconds, heading.measure) {

@@ -23,6 +23,7 @@ use crate::model::hypothesis::Hypothesis;
 use crate::model::predictor::{Derivatives, Prediction, Simulator};
 use crate::noise::statistics::median;
 use dynamics::DynamicsError;
+use least_squares::Method;
 use nalgebra::DVector;
 
 /// Parameters that a fit moves.
@@ -87,17 +88,19 @@ pub(crate) fn residuals(data: &Data, at: &Fit) -> Result<Vec<DVector<f64>>, Dyna
     Ok(predictions.into_iter().map(|prediction| prediction.residual).collect())
 }
 
-/// Damping at which a fit begins, and begins again.
-const FIRST_DAMPING: f64 = 1e-4;
-
-/// Smallest factor on the damping, applied after a step that gained all that it promised. The damping stays
-/// as it is after a step that gained less than half of that.
-const LOWEST_CUT: f64 = 1.0 / 3.0;
-
-/// Factor on the damping after a step that gained nothing; after the next such steps its square, then its
-/// cube. With too small a factor the next step hardly differs: with Nielsen's 2 and a damping of 1e-4, four
-/// out of five steps that followed a failed one failed as well.
-const RAISE: f64 = 8.0;
+/// Rule for the damping, which stays as it is after a step that gained less than half of what it promised. With
+/// too small a factor after a step that gained nothing, the next one hardly differs: with Nielsen's 2 and a
+/// damping of 1e-4, four out of five steps that followed a failed one failed as well. [`Ending`] has the limits.
+const METHOD: Method = Method {
+    first: 1e-4,
+    cut: (1.0 / 3.0, 1.0),
+    least: 1e-12,
+    raise: 8.0,
+    growth: 8.0,
+    least_raised: 1e-6,
+    max_rejections: u32::MAX,
+    ..Method::NIELSEN
+};
 
 /// Mean square, relative to the median over the segments, beyond which a segment gets less weight.
 const DOUBTFUL: f64 = 2.0;
@@ -126,8 +129,7 @@ struct Descent<'a> {
     /// Weights of the segments: below 1 for segments that fit badly while the descent is `wary`.
     weights: Vec<f64>,
     system: NormalEquations,
-    damping: f64,
-    raise: f64,
+    course: least_squares::Descent,
     ending: Ending,
     wary: bool,
     /// `true` if segments have begun again since the last step with a large gain.
@@ -168,8 +170,7 @@ impl<'a> Descent<'a> {
             point,
             at,
             weights,
-            damping: FIRST_DAMPING,
-            raise: RAISE,
+            course: least_squares::Descent::new(METHOD),
             ending: Ending::new(if wary { effort.roughly() } else { effort }),
             wary,
             settled: false,
@@ -195,9 +196,9 @@ impl<'a> Descent<'a> {
         let is_held = |own: &Parameter| self.moving == Moving::Starts || sizes && own.shape;
         let held = self.parameters.iter().map(is_held).collect();
         let before = weighted(&self.at, &self.weights);
-        let (trial, promised) = self.system.trial(&self.point, self.damping, &self.parameters, held);
+        let (trial, promised) = self.system.trial(&self.point, self.course.damping, &self.parameters, held);
         // A step that promises next to nothing is not worth a trial.
-        let done = self.ending.promises_nothing(promised / before, self.damping);
+        let done = self.ending.promises_nothing(promised / before, self.course.damping);
         let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
             let simulator = &mut self.simulator;
             let evaluation = evaluate_below(simulator, &self.data.segments, &next, &self.weights, before)?;
@@ -206,29 +207,26 @@ impl<'a> Descent<'a> {
         match outcome {
             Some((next, evaluation)) => {
                 let decrease = before - weighted(&evaluation, &self.weights);
-                self.ending.gained(decrease / before, self.damping, &evaluation);
+                self.ending.gained(decrease / before, self.course.damping, &evaluation);
+                self.course.accept(decrease / promised, decrease / before);
                 (self.point, self.at) = (next, evaluation);
-                self.gained(decrease / promised);
+                self.gained();
             }
             None if done => self.ending.nothing_left(),
             None => {
-                self.damping = (self.damping * self.raise).max(1e-6);
-                self.raise *= RAISE;
+                self.course.reject();
                 if !sizes {
-                    self.ending.failed(promised / before, self.damping);
+                    self.ending.failed(promised / before, self.course.damping);
                 }
             }
         }
     }
 
-    /// Continues from a step that gained. `quality` is the ratio of the gain to the promised gain.
-    fn gained(&mut self, quality: f64) {
+    /// Continues from a step that gained.
+    fn gained(&mut self) {
         if self.wary {
             self.weights = trust(&self.at);
         }
-        let cut = (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(LOWEST_CUT, 1.0);
-        self.damping = (self.damping * cut).max(1e-12);
-        self.raise = RAISE;
         if !self.ending.is_small() {
             self.settled = false;
         }
@@ -245,7 +243,7 @@ impl<'a> Descent<'a> {
             self.ending = Ending::new(self.effort);
         } else {
             let may = !self.hypothesis.smooth() && self.effort.begins_again && !self.settled;
-            if !may || !ended && (self.damping <= SHORT || self.in_vain) {
+            if !may || !ended && (self.course.damping <= SHORT || self.in_vain) {
                 return Ok(false);
             }
             self.settled = true;
@@ -255,7 +253,7 @@ impl<'a> Descent<'a> {
             }
             self.ending.begin_again();
         }
-        (self.damping, self.settled) = (FIRST_DAMPING, true);
+        (self.course.damping, self.settled) = (METHOD.first, true);
         self.system = self.equations(&self.weights);
         Ok(true)
     }
@@ -307,7 +305,7 @@ pub(crate) fn fit(
     for step in 1..=effort.steps {
         descent.step(step);
         let sizes = descent.is_of_sizes(step);
-        let ended = !sizes && descent.ending.is_reached(descent.damping);
+        let ended = !sizes && descent.ending.is_reached(descent.course.damping);
         if descent.begins_again(step, ended)? {
             continue;
         }

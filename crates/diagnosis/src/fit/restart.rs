@@ -14,6 +14,7 @@ use crate::model::hypothesis::Hypothesis;
 use crate::model::predictor::{Derivatives, Prediction, Simulator};
 use crate::noise::statistics::{mean, median};
 use dynamics::DynamicsError;
+use least_squares::{Descent, Method};
 
 /// Mean square, relative to the median over the segments, beyond which a segment begins again.
 const BEHIND: f64 = 1.25;
@@ -27,8 +28,8 @@ const FAR_OFF: f64 = 5.0;
 /// Largest time between two segments, in sampling intervals, at which they count as adjacent.
 const ADJACENT: f64 = 3.0;
 
-/// Maximum number of steps for one start state.
-const STEPS: usize = 8;
+/// Method of a descent from one start state.
+const METHOD: Method = Method { first: 1e-4, max_steps: 8, tolerance: SMALL, ..Method::TENFOLD };
 
 /// Relative decrease of the squares at which a descent stops, promised or made.
 const SMALL: f64 = 1e-4;
@@ -145,32 +146,22 @@ fn descend(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
     from: Vec<f64>,
-    mut at: Prediction,
+    at: Prediction,
 ) -> (Vec<f64>, Prediction) {
-    let count = from.len();
-    let mut start = from;
-    let mut damping = 1e-4;
-    for _ in 0..STEPS {
-        let own = at.jacobian.columns(0, count);
+    let mut best = (from, at);
+    let mut descent = Descent::new(METHOD);
+    while let Ok(damping) = descent.next_damping() {
+        let (start, at) = &best;
+        let own = at.jacobian.columns(0, start.len());
         let right = own.tr_mul(&at.residual);
         let Some(solved) = raised(&own.tr_mul(&own), damping).cholesky() else { break };
         let step = solved.solve(&right);
-        let before = at.residual.norm_squared();
-        if damping <= SHORT && right.dot(&step) <= SMALL * before {
+        if damping <= SHORT && right.dot(&step) <= SMALL * at.residual.norm_squared() {
             break;
         }
         let next: Vec<f64> = start.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
-        match simulator.predict(segment, &next) {
-            Ok(trial) if trial.residual.norm_squared() < before => {
-                let gain = before - trial.residual.norm_squared();
-                (start, at) = (next, trial);
-                damping *= 0.1;
-                if gain <= SMALL * before {
-                    break;
-                }
-            }
-            _ => damping *= 10.0,
-        }
+        let next = simulator.predict(segment, &next).ok().map(|trial| (next, trial));
+        descent.advance(&mut best, next, |(_, at)| at.residual.norm_squared());
     }
-    (start, at)
+    best
 }

@@ -4,17 +4,12 @@ use crate::config::EnvelopeMatchingConfig;
 use crate::matching::{Linearized, Matching, Reading};
 use envelope::Envelope;
 use estimator::{Estimate, Estimator, FitContext, FitError, Prediction, Reached, Step, Stop, Uncertainty};
+use least_squares::{Descent, Method, StopReason, gain_ratio};
 use nalgebra::{Matrix2, Vector2};
 use rand::RngExt;
 
 /// Fewest peaks: two parameters and a degree of freedom.
 const FEWEST_PEAKS: usize = 3;
-
-/// Most rejected steps in a row, after which the point counts as the best one.
-const MOST_REJECTIONS: u32 = 12;
-
-/// Predicted decrease of the loss, as a share of the loss, below which it cannot be told from rounding.
-const ROUNDING_SHARE: f64 = 1e-10;
 
 struct Found {
     parameters: Vector2<f64>,
@@ -73,10 +68,8 @@ impl EnvelopeMatchingConfig {
         Vector2::new(draw("initial amplitude"), draw("initial decay rate"))
     }
 
-    /// Minimizes the loss by Levenberg–Marquardt with Nielsen's update of the damping. Near the minimum,
-    /// where the decrease of the loss is below rounding, a step is accepted if it lowers the gradient.
-    ///
-    /// Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; Nielsen, report IMM-REP-1999-05 (DTU 1999).
+    /// Minimizes the loss by Levenberg–Marquardt with Nielsen's update of the damping. See [`gain_ratio`] for the
+    /// steps that are accepted.
     fn minimize(
         &self,
         matching: &Matching,
@@ -87,10 +80,11 @@ impl EnvelopeMatchingConfig {
         let mut parameters = start;
         let mut at = matching.linearize(&start).ok_or(FitError::NotFinite { loss: f64::NAN })?;
         // The problem is nearly linear, so that the Gauss–Newton step is right from the start.
-        let mut damping = 1e-6 * at.normal.diagonal().max();
-        let (mut growth, mut rejections, mut steps) = (2.0, 0, 0);
+        let first = 1e-6 * at.normal.diagonal().max();
+        let mut descent = Descent::new(Method { first, max_steps, ..Method::NIELSEN });
         let mut last_step = f64::INFINITY;
         let (reached, because) = loop {
+            let steps = descent.steps;
             context.observe(&Step {
                 step: steps,
                 planned: max_steps,
@@ -108,51 +102,41 @@ impl EnvelopeMatchingConfig {
                 let because = format!("the last step was {last_step:.0e} of the scaled parameters");
                 break (Reached::Converged, because);
             }
-            if rejections >= MOST_REJECTIONS {
-                let because = "no step lowers the misfit or its gradient any more".to_owned();
-                break (Reached::Converged, because);
-            }
-            if steps >= max_steps {
-                let because =
-                    format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps");
-                break (Reached::BudgetSpent, because);
-            }
-            steps += 1;
+            let damping = match descent.next_damping() {
+                Ok(damping) => damping,
+                Err(reason) => break ended(reason, steps),
+            };
             let damped = at.normal + Matrix2::from_diagonal_element(damping);
             let step = damped.cholesky().map(|factor| -factor.solve(&at.gradient));
             last_step = step.map_or(f64::INFINITY, |step| step.norm() / (1.0 + parameters.norm()));
             let trial = step.and_then(|step| {
                 let next = matching.linearize(&(parameters + step))?;
-                gain(&at, &next, &step, damping).map(|gain| (step, next, gain))
+                // The predicted decrease is ‖r‖² − ‖r + J·s‖² = sᵀ(μ·s − g) for the damped step s.
+                let predicted = step.dot(&(step * damping - at.gradient));
+                let is_flatter = || next.gradient.norm() < at.gradient.norm();
+                let ratio = gain_ratio([at.loss, next.loss], predicted, is_flatter)?;
+                Some((step, next, ratio))
             });
-            match trial {
-                Some((step, next, gain)) => {
-                    parameters += step;
-                    at = next;
-                    damping *= (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0);
-                    growth = 2.0;
-                    rejections = 0;
-                }
-                None => {
-                    damping *= growth;
-                    growth *= 2.0;
-                    rejections += 1;
-                }
-            }
+            let Some((step, next, ratio)) = trial else {
+                descent.reject();
+                continue;
+            };
+            parameters += step;
+            at = next;
+            // The length of the step says when the fit has converged, not its gain.
+            descent.accept(ratio, f64::INFINITY);
         };
-        Ok(Found { parameters, at, steps, stop: Stop { reached, because } })
+        Ok(Found { parameters, at, steps: descent.steps, stop: Stop { reached, because } })
     }
 }
 
-/// Returns the ratio of the actual to the predicted decrease; `None` if the step is to be rejected.
-fn gain(at: &Linearized, next: &Linearized, step: &Vector2<f64>, damping: f64) -> Option<f64> {
-    // The predicted decrease is ‖r‖² − ‖r + J·s‖² = sᵀ(μ·s − g) for the damped step s.
-    let predicted = step.dot(&(step * damping - at.gradient));
-    if predicted <= ROUNDING_SHARE * at.loss {
-        let flatter = next.gradient.norm() < at.gradient.norm();
-        return (flatter && next.loss <= at.loss * (1.0 + ROUNDING_SHARE)).then_some(1.0);
+/// Returns what a descent reached that ended before its steps were small, and why it ended.
+fn ended(reason: StopReason, steps: u64) -> (Reached, String) {
+    if reason == StopReason::StepsSpent {
+        let raise = "raise estimator.max_steps or fit.max_steps";
+        return (Reached::BudgetSpent, format!("the budget of {steps} steps ended; {raise}"));
     }
-    (next.loss < at.loss).then(|| ((at.loss - next.loss) / predicted).min(1.0))
+    (Reached::Converged, "no step lowers the misfit or its gradient any more".to_owned())
 }
 
 /// Returns the Gauss–Newton covariance, (JᵀJ)⁻¹ times the residual variance, with Student's t on the peaks

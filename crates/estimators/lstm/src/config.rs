@@ -1,5 +1,6 @@
 //! Settings of the estimator.
 
+use neural::{Lbfgs, Reconstruction};
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
 
@@ -8,14 +9,9 @@ use settings::{Default, Field, Kind};
 pub struct LstmConfig {
     /// Number of units of the hidden state, and of the cell.
     pub hidden_units: usize,
-    /// Most entries that the network reads.
-    pub longest_sequence: usize,
-    /// Most L-BFGS steps.
-    pub max_steps: u64,
-    /// Number of curvature pairs that L-BFGS stores.
-    pub memory: usize,
-    /// Share of its initial length to which the gradient has to fall for the training to have converged.
-    pub gradient_tolerance: f64,
+    /// Options of the training.
+    #[serde(flatten)]
+    pub training: Reconstruction,
     /// Factor on the random start values of the gates' weights.
     pub initial_scale: f64,
 }
@@ -35,24 +31,13 @@ pub(crate) const INITIAL_SCALE: Field =
 /// Configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
     HIDDEN_UNITS,
-    Field::new("longest_sequence", Kind::Integer { min: 3, max: 10_000 }, Default::Integer(1000))
-        .unit("peaks")
-        .meaning(
-            "Most entries the network reads; a longer envelope is read as means over even runs of \
-                neighboring peaks. The loss is over all peaks.",
-        )
-        .source("time grows in proportion; a longer sequence gains no digit"),
-    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(200))
-        .meaning("Most L-BFGS steps.")
-        .source("several times what ten seeds take on the shipped record"),
-    Field::new("memory", Kind::Integer { min: 1, max: 100 }, Default::Integer(10))
-        .meaning("Curvature pairs that L-BFGS remembers.")
-        .source("Nocedal, Wright, Numerical Optimization (2006), section 7.2: 3 to 20"),
-    Field::new("gradient_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-13))
-        .meaning(
-            "Training has converged when the gradient has fallen to this share of its length at \
-                the start.",
-        )
-        .source("a few roundings above what double precision leaves"),
+    Reconstruction::longest_sequence(
+        10_000,
+        1000,
+        "time grows in proportion; a longer sequence gains no digit",
+    ),
+    Lbfgs::MAX_STEPS,
+    Lbfgs::MEMORY,
+    Lbfgs::GRADIENT_TOLERANCE,
     INITIAL_SCALE,
 ];

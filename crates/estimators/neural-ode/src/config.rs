@@ -1,5 +1,6 @@
 //! Settings of the estimator.
 
+use neural::LevenbergMarquardt;
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
 
@@ -14,10 +15,9 @@ pub struct NeuralOdeConfig {
     pub curvature_weight: f64,
     /// Weight of the sum of squares of those weights that do not change when a line is added to ln A.
     pub weight_decay: f64,
-    /// Most Levenberg–Marquardt steps.
-    pub max_steps: u64,
-    /// Relative decrease of the loss in one step below which the training has converged.
-    pub loss_tolerance: f64,
+    /// Settings of the training.
+    #[serde(flatten)]
+    pub training: LevenbergMarquardt,
     /// Factor on the random start values.
     pub initial_scale: f64,
 }
@@ -49,15 +49,14 @@ pub(crate) const FIELDS: &[Field] = &[
     Field::new("weight_decay", Kind::Float { min: 1e-9, max: 1e9 }, Default::Float(1e-2))
         .meaning("Weight of the sum of squared weights, those that carry lines left out.")
         .source("every one of 100 seeds ends in the same fit; below 1e-4 weights grow without end"),
-    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(2000))
-        .meaning("Most Levenberg-Marquardt steps.")
-        .source("the paper's record takes 50 to 100, the slowest of 1000 simulated envelopes 650"),
-    Field::new("loss_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-10))
-        .meaning(
-            "Training has converged when a step lowers the loss by a smaller share of itself than \
-                this.",
-        )
-        .source("leaves the decay rate within 1e-8 of its limit on 1000 simulated envelopes"),
+    LevenbergMarquardt::max_steps(
+        2000,
+        "the paper's record takes 50 to 100, the slowest of 1000 simulated envelopes 650",
+    ),
+    LevenbergMarquardt::loss_tolerance(
+        1e-10,
+        "leaves the decay rate within 1e-8 of its limit on 1000 simulated envelopes",
+    ),
     Field::new("initial_scale", Kind::Float { min: 1e-3, max: 10.0 }, Default::Float(0.5))
         .meaning("Factor on the drawn start values of weights, biases and initial state.")
         .source("Glorot, Bengio 2010, halved: the field is close to constant"),

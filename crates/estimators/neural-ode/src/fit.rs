@@ -31,13 +31,11 @@ impl Estimator for NeuralOdeConfig {
         let times = context.input("times", scaling.centered_times(envelope));
         let targets = scaling.scaled_logs(envelope);
         let objective = Objective::new(self, &device, &times, &targets, context.is_at_zero());
-        let method = LevenbergMarquardt {
-            max_steps: context.step_limit(self.max_steps),
-            loss_tolerance: self.loss_tolerance,
-        };
+        let max_steps = context.step_limit(self.training.max_steps);
+        let method = LevenbergMarquardt { max_steps, ..self.training };
         // λ of the current state: a rejected step leaves both unchanged.
         let mut told: Option<(DVector<f64>, f64)> = None;
-        let minimum = method.minimize_resumably(&objective, self.start(context), context, |state| {
+        let minimum = method.minimize(&objective, &self.start(context), context, |state| {
             let known = told.take().filter(|(of, _)| of == state.parameters);
             let decay_rate = known.map_or_else(
                 || {

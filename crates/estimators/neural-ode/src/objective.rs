@@ -220,7 +220,7 @@ mod tests {
     use crate::config::NeuralOdeConfig;
     use crate::field::VectorField;
     use nalgebra::DVector;
-    use neural::{LeastSquares, device};
+    use neural::{LeastSquares, LevenbergMarquardt, device};
     use seed::Seed;
 
     const TIMES: &[f64] = &[-1.0, -0.93, -0.4, 0.1, 0.11, 0.7, 1.0];
@@ -232,8 +232,7 @@ mod tests {
             solver_steps: 5,
             curvature_weight: 0.3,
             weight_decay: 0.2,
-            max_steps: 0,
-            loss_tolerance: 0.0,
+            training: LevenbergMarquardt { max_steps: 0, loss_tolerance: 0.0 },
             initial_scale: 0.9,
         }
     }

@@ -1,5 +1,6 @@
 //! Settings of the estimator.
 
+use neural::LevenbergMarquardt;
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
 
@@ -12,10 +13,9 @@ pub struct PinnConfig {
     pub collocation_points: usize,
     /// Weight of the physics term.
     pub physics_weight: f64,
-    /// Most Levenberg–Marquardt steps.
-    pub max_steps: u64,
-    /// Relative decrease of the loss in one step below which the training has converged.
-    pub loss_tolerance: f64,
+    /// Settings of the training.
+    #[serde(flatten)]
+    pub training: LevenbergMarquardt,
     /// Factor on the random start values.
     pub initial_scale: f64,
 }
@@ -41,15 +41,8 @@ pub(crate) const FIELDS: &[Field] = &[
             "leaves a bias of about 3e-3 / weight on a bent envelope; above 1e6 training turns \
                 slow",
         ),
-    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(500))
-        .meaning("Most Levenberg-Marquardt steps.")
-        .source("several times what ten seeds take on the shipped record"),
-    Field::new("loss_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-8))
-        .meaning(
-            "Training has converged when a step lowers the loss by a smaller share of itself than \
-                this.",
-        )
-        .source("MINPACK's default ftol"),
+    LevenbergMarquardt::max_steps(500, "several times what ten seeds take on the shipped record"),
+    LevenbergMarquardt::loss_tolerance(1e-8, "MINPACK's default ftol"),
     Field::new("initial_scale", Kind::Float { min: 0.0, max: 10.0 }, Default::Float(0.5))
         .meaning("Factor on the drawn start values of weights, biases and decay rate.")
         .source("Glorot, Bengio 2010, halved: the target is close to a line"),

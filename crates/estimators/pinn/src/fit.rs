@@ -38,12 +38,10 @@ impl Estimator for PinnConfig {
             physics_weight: self.physics_weight,
             network_at_zero: context.is_at_zero(),
         };
-        let method = LevenbergMarquardt {
-            max_steps: context.step_limit(self.max_steps),
-            loss_tolerance: self.loss_tolerance,
-        };
+        let max_steps = context.step_limit(self.training.max_steps);
+        let method = LevenbergMarquardt { max_steps, ..self.training };
         let phase = format!("Levenberg-Marquardt, physics weight {}", self.physics_weight);
-        let minimum = method.minimize_resumably(&objective, self.start(context), context, |state| {
+        let minimum = method.minimize(&objective, &self.start(context), context, |state| {
             context.observe(&Step {
                 step: state.step,
                 planned: method.max_steps,

@@ -3,13 +3,12 @@
 use crate::basis::TangentSpace;
 use crate::data::Data;
 use crate::expression::{Expression, Workspace};
+use least_squares::{Descent, Method, gain_ratio};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Predicted decrease of the loss, as a share of the loss, below which it cannot be told from rounding.
-const ROUNDING_SHARE: f64 = 1e-10;
-
-/// Most rejected steps in a row, after which the constants count as the best ones.
-const MOST_REJECTIONS: u32 = 10;
+/// Method of a fit as far as rounding allows.
+pub(crate) const FULL: Method =
+    Method { least: 1e-15, max_steps: 300, tolerance: 1e-28, max_rejections: 10, ..Method::NIELSEN };
 
 /// Largest cosine between residuals and derivatives at which the constants count as settled.
 const SETTLED: f64 = 1e-9;
@@ -22,20 +21,6 @@ pub(crate) struct Fitted {
     /// `true` if there are best constants and the fit reached them. An expression that improves as its
     /// constants diverge, such as a·exp(b·x) + c on its way to a line, has none.
     pub(crate) settled: bool,
-}
-
-/// Stopping criteria of the fit of the constants.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Effort {
-    /// Most steps.
-    pub(crate) steps: u64,
-    /// Relative decrease of the loss predicted for a step, at or below which the fit ends.
-    pub(crate) loss_tolerance: f64,
-}
-
-impl Effort {
-    /// Fit as far as rounding allows.
-    pub(crate) const FULL: Self = Self { steps: 300, loss_tolerance: 1e-28 };
 }
 
 /// Returns the loss of an expression: its mean square error, infinite if it is not finite on every peak.
@@ -97,18 +82,15 @@ impl Point {
 }
 
 /// Fits an expression's constants by the Levenberg–Marquardt method from their present values. Marquardt's
-/// scaling of the damping moves constants of all sizes.
+/// scaling of the damping moves constants of all sizes. The method's tolerance is on the decrease of the loss that
+/// is predicted for a step; see [`gain_ratio`] for the steps that are accepted.
 ///
-/// Near the minimum, where the decrease of the loss is below rounding, a step is accepted if it lowers the
-/// gradient.
-///
-/// Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; Nielsen, report IMM-REP-1999-05 (DTU 1999);
-/// for fitting constants within genetic programming: Kommenda et al., Genet. Program. Evolvable Mach. 21
-/// (2020) 471.
+/// Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; for fitting constants within genetic programming:
+/// Kommenda et al., Genet. Program. Evolvable Mach. 21 (2020) 471.
 pub(crate) fn fit_constants(
     expression: &mut Expression,
     data: &Data,
-    effort: Effort,
+    method: Method,
     workspace: &mut Workspace,
 ) -> Fitted {
     let start = Point::new(expression, data, workspace).filter(|point| !point.constants.is_empty());
@@ -118,11 +100,10 @@ pub(crate) fn fit_constants(
         return Fitted { loss, settled: expression.constants().next().is_none() };
     };
     let rounding = data.rounding();
-    let (mut damping, mut growth, mut rejections) = (1e-3, 2.0, 0);
-    for _ in 0..effort.steps {
-        if rejections >= MOST_REJECTIONS || point.loss <= rounding {
-            break;
-        }
+    let mut descent = Descent::new(method);
+    while point.loss > rounding
+        && let Ok(damping) = descent.next_damping()
+    {
         let mut damped = point.normal.clone();
         // A constant without effect keeps its value.
         let floor = f64::MIN_POSITIVE.max(1e-30 * damped.diagonal().max());
@@ -139,30 +120,16 @@ pub(crate) fn fit_constants(
             let moved: Vec<f64> = point.constants.iter().zip(&step).map(|(at, step)| at + step).collect();
             expression.set_constants(&moved);
             let next = Point::new(expression, data, workspace)?;
-            let gain = if predicted <= ROUNDING_SHARE * point.loss {
-                let no_worse = next.loss <= point.loss * (1.0 + ROUNDING_SHARE);
-                (no_worse && next.steepness() < point.steepness()).then_some(1.0)
-            } else {
-                (next.loss < point.loss).then(|| ((point.loss - next.loss) / predicted).min(1.0))
-            };
-            gain.map(|gain| (next, gain, predicted))
+            let is_flatter = || next.steepness() < point.steepness();
+            let ratio = gain_ratio([point.loss, next.loss], predicted, is_flatter)?;
+            Some((next, ratio, predicted / point.loss))
         });
         match trial {
-            Some((next, gain, predicted)) => {
-                let settled = predicted <= effort.loss_tolerance * point.loss;
+            Some((next, ratio, gain)) => {
                 point = next;
-                damping = (damping * (1.0 - (2.0 * gain - 1.0_f64).powi(3)).max(1.0 / 3.0)).max(1e-15);
-                growth = 2.0;
-                rejections = 0;
-                if settled {
-                    break;
-                }
+                descent.accept(ratio, gain);
             }
-            None => {
-                damping *= growth;
-                growth *= 2.0;
-                rejections += 1;
-            }
+            None => descent.reject(),
         }
     }
     expression.set_constants(&point.constants);
@@ -241,7 +208,7 @@ mod tests {
     fn a_line_is_fitted_to_the_last_digits() {
         let data = data(0.0);
         let mut expression = line();
-        let found = fit_constants(&mut expression, &data, Effort::FULL, &mut Workspace::default());
+        let found = fit_constants(&mut expression, &data, FULL, &mut Workspace::default());
         let slope = expression.constants().next().unwrap();
         let expected = data.projected_slope(&data.targets);
         assert!((slope / expected - 1.0).abs() < 1e-14, "{slope} {expected}");
@@ -254,7 +221,7 @@ mod tests {
         let data = data(0.05);
         let (mut expression, mut workspace) = (exponential(), Workspace::default());
         expression.set_constants(&[-0.1, 2.0, 1.0]);
-        fit_constants(&mut expression, &data, Effort::FULL, &mut workspace);
+        fit_constants(&mut expression, &data, FULL, &mut workspace);
         let values = workspace.values(&expression, &data.times).to_vec();
         let residuals: Vec<f64> = values.iter().zip(&data.targets).map(|(value, z)| value - z).collect();
         for column in workspace.derivatives(&expression, data.len()) {
@@ -267,7 +234,7 @@ mod tests {
     #[test]
     fn constants_on_their_way_to_infinity_are_not_settled() {
         let (mut expression, mut workspace) = (exponential(), Workspace::default());
-        let found = fit_constants(&mut expression, &data(0.05), Effort::FULL, &mut workspace);
+        let found = fit_constants(&mut expression, &data(0.05), FULL, &mut workspace);
         assert!(found.loss < 0.05 && !found.settled, "{found:?}");
     }
 
@@ -276,14 +243,14 @@ mod tests {
         let data = data(0.0);
         let mut workspace = Workspace::default();
         let mut expression = line();
-        fit_constants(&mut expression, &data, Effort::FULL, &mut workspace);
+        fit_constants(&mut expression, &data, FULL, &mut workspace);
         let quick = held_out(&expression, &data, &mut workspace);
         let slow: f64 = (0..data.len())
             .map(|left_out| {
                 let mut rest = data.clone();
                 let (time, target) = (rest.times.remove(left_out), rest.targets.remove(left_out));
                 let mut again = line();
-                fit_constants(&mut again, &rest, Effort::FULL, &mut workspace);
+                fit_constants(&mut again, &rest, FULL, &mut workspace);
                 (workspace.values(&again, &[time])[0] - target).powi(2)
             })
             .sum();
@@ -296,7 +263,7 @@ mod tests {
         for (operator, at) in [(Unary::Log, 0.0), (Unary::SquareRoot, -0.5)] {
             let shifted = Expression::binary(Binary::Add, Expression::time(), &Expression::constant(at));
             let mut expression = Expression::unary(operator, shifted);
-            let found = fit_constants(&mut expression, &data, Effort::FULL, &mut Workspace::default());
+            let found = fit_constants(&mut expression, &data, FULL, &mut Workspace::default());
             assert_eq!(found.loss, f64::INFINITY, "{operator:?}");
         }
     }

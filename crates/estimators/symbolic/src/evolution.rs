@@ -1,12 +1,13 @@
 //! Evolution of a population of expressions.
 
 use crate::config::SymbolicConfig;
-use crate::constants::{Effort, fit_constants, loss};
+use crate::constants::{FULL, fit_constants, loss};
 use crate::data::Data;
 use crate::expression::{Expression, Workspace};
 use crate::front::Front;
 use crate::variation::Grammar;
 use estimator::{FitContext, Reached, Step};
+use least_squares::Method;
 use rand::{Rng, RngExt};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -157,9 +158,9 @@ impl Evolution<'_> {
     /// Fits the constants of an expression and offers it to the front.
     fn grown(&mut self, mut expression: Expression) -> Individual {
         let structure = expression.structure();
-        let effort = Effort { steps: self.config.constant_steps, loss_tolerance: BREEDING_TOLERANCE };
+        let method = Method { max_steps: self.config.constant_steps, tolerance: BREEDING_TOLERANCE, ..FULL };
         if self.known.get(&structure).is_none_or(|known| known.fits < FITS_PER_STRUCTURE) {
-            let loss = fit_constants(&mut expression, self.data, effort, &mut self.workspace).loss;
+            let loss = fit_constants(&mut expression, self.data, method, &mut self.workspace).loss;
             // Constants that allow a pole between two peaks are worthless.
             let loss = if expression.is_sound() { loss } else { f64::INFINITY };
             let known = self.known.entry(structure.clone()).or_insert_with(|| Known {

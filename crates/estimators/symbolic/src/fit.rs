@@ -2,7 +2,7 @@
 
 use crate::basis::TangentSpace;
 use crate::config::SymbolicConfig;
-use crate::constants::{Effort, fit_constants, loss, tangent_space};
+use crate::constants::{FULL, fit_constants, loss, tangent_space};
 use crate::data::Data;
 use crate::equation::Equation;
 use crate::evolution::{Evolved, evolve};
@@ -87,7 +87,7 @@ fn with_line(chosen: &Member, data: &Data, workspace: &mut Workspace) -> Option<
         let slope = Expression::binary(Binary::Multiply, Expression::constant(0.0), &Expression::time());
         joined = Expression::binary(Binary::Add, joined, &slope);
     }
-    let fitted = fit_constants(&mut joined, data, Effort::FULL, workspace);
+    let fitted = fit_constants(&mut joined, data, FULL, workspace);
     (fitted.settled && fitted.loss.is_finite()).then_some(joined)
 }
 

@@ -1,6 +1,6 @@
 //! Pareto front of error against complexity, and the choice from it.
 
-use crate::constants::{Effort, HeldOut, fit_constants, held_out};
+use crate::constants::{FULL, HeldOut, fit_constants, held_out};
 use crate::data::Data;
 use crate::expression::{Expression, Workspace};
 
@@ -60,7 +60,7 @@ impl Front {
         let mut front = Self::default();
         for member in &self.members {
             let mut expression = member.expression.clone();
-            let fitted = fit_constants(&mut expression, data, Effort::FULL, workspace);
+            let fitted = fit_constants(&mut expression, data, FULL, workspace);
             if fitted.settled {
                 front.offer(&expression, fitted.loss, data, workspace);
             }

@@ -1,6 +1,7 @@
 //! Settings of the estimator.
 
 use crate::network::{FEATURES, SAID, Size};
+use neural::{Lbfgs, Reconstruction};
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
 
@@ -15,14 +16,9 @@ pub struct TransformerConfig {
     pub head_width: usize,
     /// Width between the two linear maps of the feed-forward part.
     pub feed_forward_width: usize,
-    /// Most entries that the network reads.
-    pub longest_sequence: usize,
-    /// Most L-BFGS steps.
-    pub max_steps: u64,
-    /// Number of curvature pairs that L-BFGS stores.
-    pub memory: usize,
-    /// Share of its initial length to which the gradient has to fall for the training to have converged.
-    pub gradient_tolerance: f64,
+    /// Options of the training.
+    #[serde(flatten)]
+    pub training: Reconstruction,
     /// Factor on the random start values of the weights before the head.
     pub initial_scale: f64,
 }
@@ -75,24 +71,9 @@ pub(crate) const FIELDS: &[Field] = &[
     HEADS,
     HEAD_WIDTH,
     FEED_FORWARD_WIDTH,
-    Field::new("longest_sequence", Kind::Integer { min: 3, max: 1000 }, Default::Integer(256))
-        .unit("peaks")
-        .meaning(
-            "Most entries the network reads; a longer envelope is read as means over even runs of \
-                neighboring peaks. The loss is over all peaks.",
-        )
-        .source("the attention costs as the square of the length"),
-    Field::new("max_steps", Kind::Integer { min: 0, max: 1_000_000 }, Default::Integer(200))
-        .meaning("Most L-BFGS steps.")
-        .source("several times what ten seeds take on the shipped record"),
-    Field::new("memory", Kind::Integer { min: 1, max: 100 }, Default::Integer(10))
-        .meaning("Curvature pairs that L-BFGS remembers.")
-        .source("Nocedal, Wright, Numerical Optimization (2006), section 7.2: 3 to 20"),
-    Field::new("gradient_tolerance", Kind::Float { min: 0.0, max: 0.1 }, Default::Float(1e-13))
-        .meaning(
-            "Training has converged when the gradient has fallen to this share of its length at \
-                the start.",
-        )
-        .source("a few roundings above what double precision leaves"),
+    Reconstruction::longest_sequence(1000, 256, "the attention costs as the square of the length"),
+    Lbfgs::MAX_STEPS,
+    Lbfgs::MEMORY,
+    Lbfgs::GRADIENT_TOLERANCE,
     INITIAL_SCALE,
 ];

@@ -6,16 +6,17 @@
 
 use super::samples::Samples;
 use crate::scaled::{inverse, solve};
+use least_squares::{Descent, Method};
 use nalgebra::{DMatrix, DVector};
 
 /// Number of columns of the trend.
 const TREND: usize = 3;
 /// Number of columns of each line: the cosine and the sine, and both times the time.
 const EACH: usize = 4;
-/// Most steps of a refinement.
-const STEPS: usize = 25;
-/// Smallest relative gain of a step that is followed by another one.
-const GAIN: f64 = 1e-9;
+/// Method of a refinement.
+const METHOD: Method = Method { max_steps: 25, ..Method::TENFOLD };
+/// Smallest relative change by a step, accepted or not, that is followed by another one.
+const CHANGE: f64 = 1e-9;
 /// Largest damping ratio of a line, as decay over angular frequency.
 const MOST_DAMPING: f64 = 0.6;
 /// Fastest growth of a line over a record, in e-foldings.
@@ -127,20 +128,13 @@ impl Fit {
     /// Refines lines from a first guess by the method of Levenberg and Marquardt.
     pub(super) fn refined(samples: &Samples, lines: &[Line]) -> Option<Self> {
         let mut best = Self::new(samples, lines)?;
-        let mut damping = 1e-3;
-        for _ in 0..STEPS {
-            let Some(next) = best.step(damping).and_then(|lines| Self::new(samples, &lines)) else {
-                damping *= 10.0;
-                continue;
-            };
-            let gain = (best.rest - next.rest) / best.rest;
-            if gain > 0.0 {
-                best = next;
-                damping *= 0.1;
-            } else {
-                damping *= 10.0;
-            }
-            if gain.abs() < GAIN || damping > 1e8 {
+        let mut descent = Descent::new(METHOD);
+        while let Ok(damping) = descent.next_damping() {
+            let next = best.step(damping).and_then(|lines| Self::new(samples, &lines));
+            let before = best.rest;
+            let change = next.as_ref().map(|next| (before - next.rest).abs() / before);
+            descent.advance(&mut best, next, |fit| fit.rest);
+            if change.is_some_and(|change| change < CHANGE) {
                 break;
             }
         }

@@ -9,6 +9,7 @@ use super::start::State;
 use crate::data::Trajectory;
 use crate::linear::{inverse, raised, solve};
 use crate::{Context, LearnError, Step};
+use least_squares::{Descent, Method};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// Lengths of the pieces of consecutive fits, in periods; the last one means whole parts.
@@ -145,7 +146,10 @@ struct Point {
     rss: f64,
 }
 
-/// Relative change of the objective below which a step counts as converged.
+/// Method of the fit.
+const METHOD: Method = Method { least: 1e-12, max_damping: 1e6, ..Method::TENFOLD };
+
+/// Relative change of the objective below which two steps in a row end the fit.
 const SMALL: f64 = 1e-9;
 
 /// Fits weights and initial states from a first guess of both.
@@ -160,30 +164,21 @@ pub fn fit(
     context: &Context<'_>,
 ) -> Result<Fit, LearnError> {
     let mut point = shooting.at(shooter, weights, starts)?;
-    let (mut damping, mut converged, mut steps) = (1e-3, false, 0);
+    let method = Method { max_steps: context.steps(shooting.most_steps), ..METHOD };
+    let mut descent = Descent::new(method);
     let mut small = 0;
-    while steps < context.steps(shooting.most_steps) && !converged {
+    while small < 2
+        && let Ok(damping) = descent.next_damping()
+    {
         context.check()?;
-        steps += 1;
-        let before = shooting.objective(&point);
         let next = shooting.step(&point, damping);
         let next = next.and_then(|(weights, starts)| shooting.at(shooter, weights, starts).ok());
-        match next.filter(|next| shooting.objective(next) < before) {
-            Some(next) => {
-                let change = (before - shooting.objective(&next)) / before.max(f64::MIN_POSITIVE);
-                point = next;
-                damping = (damping * 0.1).max(1e-12);
-                small = if change < SMALL { small + 1 } else { 0 };
-                converged = small >= 2;
-            }
-            None => {
-                damping *= 10.0;
-                converged = damping > 1e6;
-            }
+        if descent.advance(&mut point, next, |point| shooting.objective(point)) {
+            small = if descent.last_gain < SMALL { small + 1 } else { 0 };
         }
         let rms = (point.rss / shooting.samples().max(1) as f64).sqrt();
         let phase = shooting.phase.to_owned();
-        (context.observe)(&Step { step: steps, phase, train: rms, validation: None });
+        (context.observe)(&Step { step: descent.steps, phase, train: rms, validation: None });
     }
     let count = shooter.weights();
     let (information, _) =
@@ -195,8 +190,8 @@ pub fn fit(
         rss: point.rss,
         weights: point.weights,
         starts: point.starts,
-        steps,
-        converged,
+        steps: descent.steps,
+        converged: small >= 2 || descent.is_converged(),
     })
 }
 

@@ -8,6 +8,7 @@ use crate::hidden::{Bank, Hidden};
 use dynamics::chain::Observed;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use dynamics::{Active, DynamicsError, Effect, Hold, Input, Nominal, SYSTEM_HIDDEN, System};
+use least_squares::{Descent, Method};
 use nalgebra::{DMatrix, DVector};
 use results::{CalibratedRow, ClosureStudy, DiagnosisResult};
 use std::collections::BTreeMap;
@@ -20,8 +21,16 @@ const PERIODS: f64 = 6.0;
 const PER_PERIOD: f64 = 25.0;
 /// Lower limit of a stated closure, which a diagnosis also applies: worse by the gap itself.
 const LOWEST: f64 = -1.0;
-/// Largest number of steps for fitting an initial state.
-const STEPS: usize = 40;
+/// Method of fitting an initial state.
+const METHOD: Method = Method {
+    first: 1e-4,
+    least: 1e-12,
+    least_raised: 1e-6,
+    max_steps: 40,
+    tolerance: 1e-9,
+    max_damping: 1e7,
+    ..Method::TENFOLD
+};
 
 const MEANS: &str = "1 − m²/m₀², m and m₀ the root mean square distances of the repaired and of the nominal simulator from the \
     motion without noise, start states fitted in segments of six periods; at least −1";
@@ -189,12 +198,13 @@ impl Clean {
         let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden;
         let mut at = vec![segment.start.position, segment.start.velocity];
         at.extend(relaxed.iter().flatten().take(hidden));
-        let (mut residual, mut jacobian) = self.residual(model, segment, &at)?;
-        let mut squares = residual.norm_squared();
-        let mut damping = 1e-4;
-        for _ in 0..STEPS {
-            let mut matrix = jacobian.tr_mul(&jacobian);
-            let slope = jacobian.tr_mul(&residual);
+        let (residual, jacobian) = self.residual(model, segment, &at)?;
+        let mut best = (at, residual, jacobian);
+        let mut descent = Descent::new(METHOD);
+        while let Ok(damping) = descent.next_damping() {
+            let (at, residual, jacobian) = &best;
+            let mut matrix = jacobian.tr_mul(jacobian);
+            let slope = jacobian.tr_mul(residual);
             for index in 0..matrix.nrows() {
                 if let Some(entry) = matrix.get_mut((index, index)) {
                     *entry += damping * *entry + f64::MIN_POSITIVE;
@@ -203,22 +213,11 @@ impl Clean {
             let Some(factor) = matrix.cholesky() else { break };
             let step = factor.solve(&slope);
             let next: Vec<f64> = at.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
-            match self.residual(model, segment, &next) {
-                Ok((trial, derivatives)) if trial.norm_squared() < squares => {
-                    let gained = squares - trial.norm_squared();
-                    let done = gained <= 1e-9 * squares;
-                    (at, residual, jacobian) = (next, trial, derivatives);
-                    squares = residual.norm_squared();
-                    damping = (damping * 0.1_f64).max(1e-12);
-                    if done {
-                        break;
-                    }
-                }
-                _ if damping > 1e6 => break,
-                _ => damping = (damping * 10.0).max(1e-6),
-            }
+            let trial = self.residual(model, segment, &next).ok();
+            let trial = trial.map(|(residual, jacobian)| (next, residual, jacobian));
+            descent.advance(&mut best, trial, |(_, residual, _)| residual.norm_squared());
         }
-        Ok(squares)
+        Ok(best.1.norm_squared())
     }
 
     fn residual(

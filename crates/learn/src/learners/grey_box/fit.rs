@@ -4,8 +4,8 @@ use super::law::State;
 use super::run::{Motion, Piece, Runnable};
 use crate::LearnError;
 use crate::flow::Running;
+use least_squares::{LeastSquares, Linearized, Method, Minimum};
 use nalgebra::{DMatrix, DVector};
-use neural::{LeastSquares, LevenbergMarquardt, Linearized, Minimum};
 use std::ops::ControlFlow;
 
 /// Parameters of a law, and the start state of each piece.
@@ -89,9 +89,9 @@ impl Runs<'_> {
     ) -> Result<(Point, Minimum), LearnError> {
         let problem = Problem { runs: self, base: from, free: self.scaled(from) };
         let count: usize = self.pieces.iter().map(|piece| piece.values.len()).sum();
-        let method = LevenbergMarquardt { max_steps, loss_tolerance: 1e-9 };
+        let method = Method { max_steps, tolerance: 1e-9, ..Method::NIELSEN };
         let start = DVector::zeros(problem.free.len());
-        let minimum = method.minimize(&problem, start, |state| {
+        let minimum = method.minimize(&problem, &start, |state| {
             observe(state.step, self.spread * (state.loss / count.max(1) as f64).sqrt())
         })?;
         Ok((problem.point(&minimum.parameters), minimum))

@@ -22,6 +22,7 @@ use crate::flow::{Posterior, Running};
 use crate::judge::validation_error;
 use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Step};
 use estimator::Reached;
+use least_squares::{Descent, Method};
 use serde::Deserialize;
 use settings::{Default, Field, Kind as Value, Resolved, SettingsError};
 use trajectory::Shape;
@@ -80,8 +81,9 @@ struct Keys {
 /// Successive tolerances of the law's residual, relative to the typical acceleration.
 const TOLERANCES: [f64; 5] = [0.5, 0.1, 0.02, 0.005, 0.001];
 
-/// Relative change of the objective below which the fit at one tolerance counts as converged.
-const SMALL: f64 = 1e-5;
+/// Method of the fit at one tolerance of the law.
+const METHOD: Method =
+    Method { first: 1e-4, least: 1e-12, tolerance: 1e-5, max_damping: 5e7, ..Method::TENFOLD };
 
 impl Pinn {
     fn read(resolved: &Resolved) -> Result<Self, SettingsError> {
@@ -149,36 +151,27 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Minimizes the objective at one tolerance by Levenberg–Marquardt.
-    fn settle(&mut self, most: u64, context: &Context<'_>) -> Result<(), LearnError> {
-        let mut damping = 1e-4;
-        let mut standing = self.problem.standing(&self.unknowns, self.sizes);
-        self.converged = false;
-        for _ in 0..most {
+    /// Minimizes the objective at one tolerance by Levenberg–Marquardt, in at most `most` accepted steps.
+    fn settle(&mut self, mut most: u64, context: &Context<'_>) -> Result<(), LearnError> {
+        let (problem, sizes) = (self.problem, self.sizes);
+        let mut best = (problem.standing(&self.unknowns, sizes), self.unknowns.clone());
+        let mut equations = None;
+        let mut descent = Descent::new(METHOD);
+        while most > 0
+            && let Ok(damping) = descent.next_damping()
+        {
             context.check()?;
-            let equations = self.problem.equations(&self.unknowns, self.sizes);
-            let mut gained = None;
-            while gained.is_none() && damping < 1e8 {
-                let next = equations.step(&self.unknowns, damping);
-                let found = next.map(|next| (self.problem.standing(&next, self.sizes), next));
-                gained = found.filter(|(found, _)| found.objective < standing.objective);
-                damping *= if gained.is_some() { 0.1 } else { 10.0 };
-            }
-            let Some((found, next)) = gained else {
-                self.converged = true;
-                break;
-            };
-            let small = standing.objective - found.objective < SMALL * standing.objective;
-            (standing, self.unknowns) = (found, next);
-            damping = damping.max(1e-12);
-            self.steps += 1;
-            let phase = format!("law held to {:.3e}", self.sizes.tolerance);
-            (context.observe)(&Step { step: self.steps, phase, train: standing.misfit, validation: None });
-            if small {
-                self.converged = true;
-                break;
+            let system = equations.get_or_insert_with(|| problem.equations(&best.1, sizes));
+            let next = system.step(&best.1, damping).map(|next| (problem.standing(&next, sizes), next));
+            if descent.advance(&mut best, next, |(standing, _)| standing.objective) {
+                (equations, most) = (None, most - 1);
+                self.steps += 1;
+                let phase = format!("law held to {:.3e}", sizes.tolerance);
+                (context.observe)(&Step { step: self.steps, phase, train: best.0.misfit, validation: None });
             }
         }
+        self.converged = descent.is_converged();
+        self.unknowns = best.1;
         Ok(())
     }
 }

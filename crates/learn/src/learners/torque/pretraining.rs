@@ -6,6 +6,7 @@ use crate::data::{DataSet, LocalState, Trajectory, local_states};
 use crate::flow::{Field, Penalty, Slope};
 use crate::linear::{raised, solve};
 use dynamics::Hold;
+use least_squares::{Descent, Method};
 use nalgebra::{DMatrix, DVector};
 
 /// Largest number of states that are matched.
@@ -58,6 +59,17 @@ fn matched(part: &Trajectory, data: &DataSet) -> Vec<(Place, f64)> {
     local_states(part, data.period_s / 8.0).into_iter().map(of_state).collect()
 }
 
+/// Method of a round.
+const METHOD: Method = Method { least: 1e-12, tolerance: 1e-7, ..Method::TENFOLD };
+
+/// Weights, with their objective and its normal equations.
+struct Point {
+    weights: Vec<f64>,
+    objective: f64,
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
 struct Matching<'a> {
     field: &'a dyn Field,
     chosen: &'a [(Place, f64)],
@@ -67,29 +79,15 @@ struct Matching<'a> {
 
 impl Matching<'_> {
     /// Returns the weights after Levenberg–Marquardt.
-    fn solved(&self, start: Vec<f64>, steps: u64) -> Vec<f64> {
-        let (mut weights, mut damping) = (start, 1e-3);
-        let (mut objective, mut normal, mut right) = self.at(&weights);
-        for _ in 0..steps {
-            let Some(change) = solve(&raised(&normal, damping), &right) else { break };
-            let next: Vec<f64> = weights.iter().zip(change.iter()).map(|(old, by)| old + by).collect();
-            let found = self.at(&next);
-            if found.0 < objective {
-                let small = objective - found.0 < 1e-7 * objective;
-                weights = next;
-                (objective, normal, right) = found;
-                damping = (damping * 0.1).max(1e-12);
-                if small {
-                    break;
-                }
-            } else {
-                damping *= 10.0;
-                if damping > 1e8 {
-                    break;
-                }
-            }
+    fn solved(&self, start: Vec<f64>, max_steps: u64) -> Vec<f64> {
+        let mut best = self.at(start);
+        let mut descent = Descent::new(Method { max_steps, ..METHOD });
+        while let Ok(damping) = descent.next_damping() {
+            let Some(change) = solve(&raised(&best.normal, damping), &best.right) else { break };
+            let next = best.weights.iter().zip(change.iter()).map(|(old, by)| old + by).collect();
+            descent.advance(&mut best, Some(self.at(next)), |point| point.objective);
         }
-        weights
+        best.weights
     }
 
     /// Returns the root mean square error of the accelerations.
@@ -98,22 +96,22 @@ impl Matching<'_> {
         (self.chosen.iter().map(off).sum::<f64>() / self.chosen.len().max(1) as f64).sqrt()
     }
 
-    /// Returns objective, normal matrix and right side at given weights.
-    fn at(&self, weights: &[f64]) -> (f64, DMatrix<f64>, DVector<f64>) {
+    fn at(&self, weights: Vec<f64>) -> Point {
         let count = weights.len();
         let mut slope = Slope { weights: vec![0.0; count], ..Slope::default() };
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());
         for (place, wanted) in self.chosen {
-            let value = self.field.sloped(weights, place, &mut slope);
+            let value = self.field.sloped(&weights, place, &mut slope);
             residuals.push((wanted - value) / self.error);
             rows.extend(slope.weights.iter().map(|own| own / self.error));
         }
         let rows = DMatrix::from_row_slice(residuals.len(), count, &rows);
         let residuals = DVector::from_vec(residuals);
         let precision = DVector::from_column_slice(&self.penalty.precision);
-        let away = DVector::from_column_slice(weights) - DVector::from_column_slice(&self.penalty.mean);
+        let away = DVector::from_column_slice(&weights) - DVector::from_column_slice(&self.penalty.mean);
         let objective = residuals.norm_squared() + away.dot(&precision.component_mul(&away));
         let normal = rows.tr_mul(&rows) + DMatrix::from_diagonal(&precision);
-        (objective, normal, rows.tr_mul(&residuals) - precision.component_mul(&away))
+        let right = rows.tr_mul(&residuals) - precision.component_mul(&away);
+        Point { weights, objective, normal, right }
     }
 }
