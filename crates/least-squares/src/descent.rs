@@ -150,7 +150,7 @@ pub fn is_rounding(loss: f64, predicted: f64) -> bool {
 /// Returns the gain ratio of a step, its actual over its predicted decrease of the loss, at most 1; `None` if the
 /// step has to be rejected because it does not lower the loss.
 ///
-/// Where rounding hides its decrease, the step has to lower the gradient instead, and its ratio is 1: the loss is
+/// A step whose decrease rounding hides has to lower the gradient instead, and its ratio is 1: the loss is
 /// flat to rounding over half the digits of the parameters, the gradient is not.
 #[must_use]
 pub fn gain_ratio([loss, next]: [f64; 2], predicted: f64, is_flatter: impl FnOnce() -> bool) -> Option<f64> {
