@@ -95,15 +95,20 @@ fn workspace() -> TempDir {
 fn compile_fast(home: &Path) {
     let path = home.join("Cargo.toml");
     let mut manifest = fs::read_to_string(&path).unwrap();
-    for (run_fast, compiled_fast) in [("3\ncodegen-units = 1", "1"), ("2", "0")] {
-        manifest =
-            manifest.replace(&format!("opt-level = {run_fast}"), &format!("opt-level = {compiled_fast}"));
+    for (run_fast, compiled_fast) in [("3, codegen-units = 1", "1"), ("2", "0")] {
+        let [run_fast, compiled_fast] = [run_fast, compiled_fast].map(|level| format!("opt-level = {level}"));
+        assert!(manifest.contains(&run_fast), "{run_fast}");
+        manifest = manifest.replace(&run_fast, &compiled_fast);
     }
+    let table = "[profile.dev.package]\n";
     for crate_manifest in files("crates", "toml").iter().filter(|path| path.ends_with("Cargo.toml")) {
         let text = fs::read_to_string(crate_manifest).unwrap();
         let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"')).unwrap();
-        if !manifest.contains(&format!("[profile.dev.package.{name}]")) {
-            manifest.push_str(&format!("\n[profile.dev.package.{name}]\nopt-level = 0\n"));
+        let is_set = manifest
+            .lines()
+            .any(|line| line.starts_with(&format!("{name}.")) || line.starts_with(&format!("{name} =")));
+        if !is_set {
+            manifest = manifest.replace(table, &format!("{table}{name}.opt-level = 0\n"));
         }
     }
     fs::write(path, manifest).unwrap();
