@@ -1,11 +1,8 @@
 //! Oscillator with a hysteretic force after Bouc and Wen.
 
-use super::law::{Guess, Law, State};
-use crate::data::{DataSet, Trajectory};
-use crate::flow::first_guess;
-use crate::learners::library::{Term, weighted};
-use crate::learners::weak_sindy::regression;
-use crate::linear::least_squares;
+use super::law::{Guess, Law, State, linear};
+use crate::data::DataSet;
+use crate::learners::library::weighted;
 use serde::{Deserialize, Serialize};
 
 /// θ̈ = b·u − c·θ̇ − k·θ − z + a₀, where z is hidden: ż = a·θ̇ − β·(γ·|θ̇|·|z|ⁿ⁻¹·z + δ·θ̇·|z|ⁿ). The products βγ and
@@ -43,30 +40,20 @@ impl Law for BoucWen {
     /// Returns the linear law of the regression in weak form, with a share of its stiffness in the hysteretic
     /// force, which does not dissipate yet.
     fn guesses(&self, data: &DataSet) -> Vec<Guess> {
-        if !data.is_driven() {
-            return Vec::new();
-        }
-        let rows = regression(data, &[Term::Input, Term::Velocity, Term::Position, Term::Constant]);
-        let Some(found) = least_squares(&rows.rows, &rows.right) else { return Vec::new() };
-        let [gain, damping, stiffness, constant] = found.as_slice() else { return Vec::new() };
+        let Some([gain, damping, stiffness, constant]) = linear(data) else { return Vec::new() };
         let stiffness = stiffness.abs();
         // Little dissipation over a typical displacement.
         let dissipation = 0.1 / data.scale.position;
         let guess = |share: f64| {
             let (elastic, hysteretic) = ((1.0 - share) * stiffness, share * stiffness);
-            let parameters = vec![*gain, -damping, elastic, *constant, hysteretic, dissipation, 0.0, 1.0];
+            let parameters = vec![gain, -damping, elastic, constant, hysteretic, dissipation, 0.0, 1.0];
             let acceleration = data.scale.acceleration;
             let damping = damping.abs().max(0.01 * stiffness.sqrt());
             let sizes =
-                vec![*gain, damping, elastic, 0.1 * acceleration, hysteretic, dissipation, dissipation, 0.1];
+                vec![gain, damping, elastic, 0.1 * acceleration, hysteretic, dissipation, dissipation, 0.1];
             Guess { parameters, sizes, hidden: 0.0, first: vec![0, 1, 2, 4, 5, 6] }
         };
         SHARES.into_iter().map(guess).collect()
-    }
-
-    fn start(&self, piece: &Trajectory, period_s: f64, hidden: f64) -> State {
-        let state = first_guess(piece, period_s);
-        [state.position, state.velocity, hidden]
     }
 
     fn sizes(&self, data: &DataSet) -> State {

@@ -1,12 +1,9 @@
 //! Duffing oscillator with the imperfections of an electronic one.
 
-use super::law::{Guess, Law, State};
+use super::law::{Guess, Law, State, linear};
 use crate::Place;
-use crate::data::{DataSet, Trajectory};
-use crate::flow::first_guess;
-use crate::learners::library::{Term, weighted};
-use crate::learners::weak_sindy::regression;
-use crate::linear::least_squares;
+use crate::data::DataSet;
+use crate::learners::library::weighted;
 use serde::{Deserialize, Serialize};
 
 /// Duffing oscillator whose circuit is not ideal:
@@ -83,12 +80,7 @@ impl Law for Duffing {
 
     /// Returns the linear law of the regression in weak form; empty without an input.
     fn guesses(&self, data: &DataSet) -> Vec<Guess> {
-        if !data.is_driven() {
-            return Vec::new();
-        }
-        let rows = regression(data, &[Term::Input, Term::Velocity, Term::Position, Term::Constant]);
-        let Some(found) = least_squares(&rows.rows, &rows.right) else { return Vec::new() };
-        let [gain, damping, stiffness, constant] = found.as_slice() else { return Vec::new() };
+        let Some([gain, damping, stiffness, constant]) = linear(data) else { return Vec::new() };
         let [x, v, u, a] = self.scale;
         let damping = damping * v / a;
         let parameters = [
@@ -111,11 +103,6 @@ impl Law for Duffing {
             hidden: 0.0,
             first: (0..6).collect(),
         }]
-    }
-
-    fn start(&self, piece: &Trajectory, period_s: f64, _hidden: f64) -> State {
-        let state = first_guess(piece, period_s);
-        [state.position, state.velocity, 0.0]
     }
 
     fn sizes(&self, _data: &DataSet) -> State {

@@ -2,6 +2,10 @@
 
 use crate::Place;
 use crate::data::{DataSet, Trajectory};
+use crate::flow::first_guess;
+use crate::learners::library::Term;
+use crate::learners::weak_sindy::regression;
+use crate::linear::least_squares;
 
 /// State of a law. The first entry is the observed quantity, unless the law says otherwise; a law with two states
 /// leaves the last at 0.
@@ -18,6 +22,16 @@ pub(super) struct Guess {
     pub(super) hidden: f64,
     /// Indices of the parameters that are fitted first.
     pub(super) first: Vec<usize>,
+}
+
+/// Returns gain, damping, stiffness and constant of the linear law θ̈ = b·u + c·θ̇ + k·θ + a₀ by the regression in weak form;
+/// `None` without an input.
+pub(super) fn linear(data: &DataSet) -> Option<[f64; 4]> {
+    if !data.is_driven() {
+        return None;
+    }
+    let rows = regression(data, &[Term::Input, Term::Velocity, Term::Position, Term::Constant]);
+    least_squares(&rows.rows, &rows.right)?.as_slice().try_into().ok()
 }
 
 /// Law with parameters: rates of the states.
@@ -37,7 +51,10 @@ pub(super) trait Law: Send + Sync {
     fn guesses(&self, data: &DataSet) -> Vec<Guess>;
 
     /// Returns a state from which the start state of a piece is searched; `hidden` is typical of the hidden state.
-    fn start(&self, piece: &Trajectory, period_s: f64, hidden: f64) -> State;
+    fn start(&self, piece: &Trajectory, period_s: f64, hidden: f64) -> State {
+        let state = first_guess(piece, period_s);
+        [state.position, state.velocity, hidden]
+    }
 
     /// Returns the typical sizes of the states.
     fn sizes(&self, data: &DataSet) -> State;

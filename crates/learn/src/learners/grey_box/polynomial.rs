@@ -2,8 +2,7 @@
 
 use super::law::{Guess, Law, State};
 use crate::Place;
-use crate::data::{DataSet, Trajectory};
-use crate::flow::first_guess;
+use crate::data::DataSet;
 use crate::learners::library::{Term, signed};
 use crate::learners::weak_sindy::regression;
 use crate::linear::least_squares;
@@ -104,11 +103,6 @@ impl Law for Polynomial {
         let cubic = |term: &[usize; 3]| of(term).is_some() || *term == [3, 0, 0];
         let first = self.terms.iter().enumerate().filter(|(_, term)| cubic(term)).map(|(at, _)| at).collect();
         vec![Guess { sizes: vec![1.0; self.terms.len()], parameters, hidden: 0.0, first }]
-    }
-
-    fn start(&self, piece: &Trajectory, period_s: f64, _hidden: f64) -> State {
-        let state = first_guess(piece, period_s);
-        [state.position, state.velocity, 0.0]
     }
 
     fn sizes(&self, _data: &DataSet) -> State {
