@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy
 
-# Thirty slots that repeat: how many of them each kind has.
-SHARES = {"columns": 4, "runs": 4, "command": 2, "handled": 4, "codings": 4, "headers": 7, "modes": 2, "dampings": 3}
+# Thirty-five slots that repeat: how many of them each kind has.
+SHARES = {"columns": 4, "runs": 4, "command": 2, "handled": 4, "codings": 4, "headers": 7, "modes": 2, "dampings": 3, "strikes": 3, "beside": 2}
 # Time, angle, position, deflection, temperature.
 WORDS = {
     "en": ("Time", "Angle", "Position", "Displacement", "Temperature"), "de": ("Zeit", "Winkel", "Position", "Auslenkung", "Temperatur"),
@@ -950,6 +950,87 @@ def dampings_three(rng):
 
 def dampings_noisy(rng):
     return simple(rng, snr=(7.9, 8.1))
+
+
+# 9. Strikes of a hammer.
+
+def strike(rng, count, strikes):
+    """A rest, then strikes of a hammer with one to three modes, each of which decays into the noise."""
+    swing = Swing(rng, f=(2, 60), z=(0.004, 0.03), per=(12, 60), snr=(30, 300), size=(0.05, 5))
+    modes = [(swing.f, swing.z, 1.0)]
+    for _ in range(count - 1):
+        modes.append((max(f for f, _, _ in modes) * rng.uniform(1.35, 2.5), spread(rng, 0.004, 0.03), rng.uniform(0.25, 0.8)))
+    swing.rate = float(f"{max(swing.rate, 12 * max(f for f, _, _ in modes)):.3g}")
+    longest = max(1 / (2 * math.pi * f * z) for f, z, _ in modes)
+    length = min(math.log(swing.snr) * rng.uniform(0.8, 1.3) * longest, 20000 / strikes / swing.rate)
+    rest = rng.uniform(0.05, 0.3) * length
+    swing.cycles = length * swing.f
+    times = rest + numpy.concatenate([[0.0], numpy.cumsum(length * rng.uniform(0.7, 1.2, strikes - 1))])
+    t = numpy.arange(int((times[-1] + length) * swing.rate)) / swing.rate
+    acceleration = rng.random() < 0.5
+    x = numpy.zeros(len(t))
+    for at in times:
+        blow = rng.uniform(0.6, 1.0) if at > rest else 1.0
+        for f, z, size in modes:
+            w = 2 * math.pi * f
+            # An impulse starts every mode at its rest with a velocity.
+            own, speed = free(numpy.maximum(t - at, 0), f, z, 0.0, blow * size * swing.size * w)
+            x += numpy.where(t >= at, (-w * w * own - 2 * z * w * speed) / w**2 if acceleration else own, 0.0)
+    unit = pick(rng, ["m/s^2", "g"]) if acceleration else pick(rng, ["mm", "V"])
+    name = {"mm": "Displacement", "V": "Ch1"}.get(unit, "Acceleration")
+    all_modes = [{"frequency_hz": f, "damping_ratio": z} for f, z, _ in modes]
+    more = {"modes": all_modes} if count > 1 else {}
+    log = table(rng, swing, ["Time (s)", f"{name} ({unit})"], [t, x + swing.hiss(len(t))], [swing.noise])
+    return ".csv", log, given(swing, strikes=strikes, **more)
+
+
+def strikes_one(rng):
+    return strike(rng, 1, int(rng.integers(1, 4)))
+
+
+def strikes_two(rng):
+    return strike(rng, 2, int(rng.integers(1, 4)))
+
+
+def strikes_three(rng):
+    return strike(rng, 3, int(rng.integers(1, 4)))
+
+
+# 10. Something beside a swing, or only its size.
+
+def beside_hum(rng):
+    """The mains hum at a constant amplitude."""
+    swing = Swing(rng, f=(1, 25), z=(0.003, 0.05), cycles=(15, 60), snr=(30, 1000), size=SIZES["V"])
+    swing.rate = float(f"{max(swing.rate, rng.uniform(220, 900)):.3g}")
+    t = swing.times(uneven=False)
+    line = pick(rng, [50.0, 60.0]) * (1 + rng.uniform(-1e-3, 1e-3))
+    x = swing.decay(t) + rng.uniform(0.03, 0.4) * swing.size * numpy.sin(2 * math.pi * line * t + rng.uniform(0, 6)) + swing.hiss(len(t))
+    return ".csv", table(rng, swing, ["Time (s)", "CH1 (V)"], [t, x], [swing.noise]), given(swing, hum_hz=line)
+
+
+def beside_motor(rng):
+    """A motor that runs beside the swing, at 1.15 to 3 times its frequency."""
+    swing = Swing(rng, f=(1, 25), z=(0.003, 0.03), per=(25, 200), cycles=(25, 60), snr=(50, 1000), size=SIZES["mm"])
+    t = swing.times(uneven=False)
+    line = swing.f * rng.uniform(1.15, 3)
+    x = swing.decay(t) + rng.uniform(0.03, 0.3) * swing.size * numpy.sin(2 * math.pi * line * t + rng.uniform(0, 6)) + swing.hiss(len(t))
+    return ".csv", table(rng, swing, ["time_s", "disp_mm"], [t, x], [swing.noise]), given(swing, motor_hz=line)
+
+
+def beside_magnitude(rng):
+    """Only the absolute value of a vector was exported: its own noise is positive too."""
+    swing = Swing(rng, f=(0.3, 5), z=(0.002, 0.05), per=(40, 200), cycles=(12, 60), snr=(30, 1000), size=(0.2, 6))
+    t = swing.times(uneven=False)
+    three = axis(rng)[:, None] * swing.decay(t) + swing.hiss((3, len(t)))
+    title = pick(rng, ["Absolute velocity (rad/s)", "Absolute (rad/s)", "gyro_abs_rad_s"])
+    return ".csv", table(rng, swing, ["Time (s)", title], [t, numpy.linalg.norm(three, axis=0)], [swing.noise]), given(swing, accept="number or message")
+
+
+def beside_rectified(rng):
+    """A sensor that writes the absolute value of its signal."""
+    swing = Swing(rng, f=(0.3, 20), z=(0.002, 0.05), per=(40, 200), cycles=(12, 60), snr=(30, 1000), size=SIZES["V"])
+    t = swing.times(uneven=False)
+    return ".csv", table(rng, swing, ["t_s", "signal (V)"], [t, numpy.abs(swing.decay(t)) + swing.hiss(len(t))], [swing.noise]), given(swing, accept="number or message")
 
 
 def variants(kind):

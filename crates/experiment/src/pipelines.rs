@@ -112,12 +112,16 @@ fn unsuited(peaks: &Result<Extraction, EnvelopeError>, record: &Record, clock: &
     }
     let modes = identify::modes(record, clock);
     if let Some(second) = modes.get(1).filter(|mode| mode.share > SECOND_MODE) {
-        return Some(format!(
-            "the record holds {} modes, the second of {:.3} Hz with {:.0} % of the power; all but the strongest are subtracted first",
-            modes.len(),
-            second.frequency_hz.value,
-            100.0 * second.share
-        ));
+        let (frequency, share) = (second.frequency_hz.value, 100.0 * second.share);
+        return Some(match modes.iter().filter(|mode| !mode.is_steady).count() {
+            1 => format!(
+                "the record holds a steady line of {frequency:.3} Hz with {share:.0} % of the power, which is subtracted first"
+            ),
+            count => format!(
+                "the record holds {count} modes, the second of {frequency:.3} Hz with {share:.0} % of the power; all but the \
+                 strongest are subtracted first"
+            ),
+        });
     }
     let basis = identify::identify(record, clock).ok()?.basis;
     matches!(basis, Basis::Samples(_))

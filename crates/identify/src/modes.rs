@@ -42,6 +42,11 @@ const HARMONIC: f64 = 0.01;
 /// Multiples of a frequency that count as harmonics, each with the largest power of such a harmonic over that
 /// of the fundamental: high harmonics of a swing are weak.
 const MULTIPLES: [(f64, f64); 4] = [(2.0, 1.0), (3.0, 1.0), (4.0, 0.01), (5.0, 0.01)];
+/// Decay of a line over a record, in e-foldings, up to which its amplitude is steady, and that of a swing from which it
+/// decays; and the standard errors that these numbers are sure to.
+const STEADY: f64 = 0.3;
+const DECAYS: f64 = 1.0;
+const SURE: f64 = 3.0;
 /// Shares of a record, from its start, in which lines are searched: those that decay fast fill no more.
 const SPANS: [f64; 3] = [1.0, 0.25, 0.0625];
 
@@ -57,6 +62,9 @@ pub struct Mode {
     pub amplitude: f64,
     /// Part of the modes' power over the record, between 0 and 1.
     pub share: f64,
+    /// `true` if it keeps its amplitude while others decay: a line that something beside the system makes, such as the
+    /// hum of the mains or a motor, and no mode.
+    pub is_steady: bool,
 }
 
 impl Mode {
@@ -71,7 +79,7 @@ impl Mode {
     }
 }
 
-/// Returns the modes of a free decay under a clock, the most powerful first.
+/// Returns the modes of a free decay under a clock, the most powerful first, and after them the steady lines beside them.
 ///
 /// The record is taken as a sum of damped sinusoids and a slow trend: poles of the Hankel matrix of the record
 /// (Kung 1978; Hua, Sarkar 1990, equation 14), refined by variable projection (Golub, Pereyra 1973). A mode
@@ -103,7 +111,8 @@ pub(crate) struct Separated {
 pub(crate) fn separated(record: &Record, clock: &Clock) -> Option<Separated> {
     let samples = Samples::new(record, clock)?;
     let fit = samples.fitted()?;
-    let lines = fit.lines.iter().enumerate();
+    let is_steady = samples.steady(&fit);
+    let lines = fit.lines.iter().enumerate().filter(|(number, _)| !is_steady[*number]);
     let (number, strongest) = lines.max_by(|(_, one), (_, other)| one.energy.total_cmp(&other.energy))?;
     let values = fit.residuals(&samples, &[number]).into_iter().map(|value| samples.size * value);
     let Line { omega, decay } = strongest.line;
@@ -218,7 +227,21 @@ impl Samples {
         None
     }
 
+    /// Returns, for each line of a fit, whether it keeps its amplitude over the record while others decay.
+    fn steady(&self, fit: &Fit) -> Vec<bool> {
+        let noise = Spectrum::new(self, &fit.residuals(self, &[]), 1.0);
+        let decay = |line: &Fitted| {
+            let level = noise.noise(line.line.omega, fit.count);
+            (line.line.decay, SURE * (line.variances[1] * level).sqrt())
+        };
+        let decays = fit.lines.iter().map(decay).any(|(decay, error)| decay - error > DECAYS);
+        let is_steady =
+            |(decay, error): (f64, f64)| decays && decay.abs() <= error && decay.abs() + error < STEADY;
+        fit.lines.iter().map(decay).map(is_steady).collect()
+    }
+
     fn reported(&self, fit: &Fit) -> Vec<Mode> {
+        let steady = self.steady(fit);
         let noise = Spectrum::new(self, &fit.residuals(self, &[]), 1.0);
         let is_harmonic = |line: &Fitted| {
             let of = |other: &Fitted| {
@@ -227,10 +250,11 @@ impl Samples {
             };
             fit.lines.iter().any(of)
         };
-        let mut lines: Vec<&Fitted> = fit.lines.iter().filter(|line| !is_harmonic(line)).collect();
-        lines.sort_by(|one, other| other.energy.total_cmp(&one.energy));
-        let power: f64 = lines.iter().map(|line| line.energy).sum();
-        let mode = |line: &&Fitted| {
+        let mut lines: Vec<(bool, &Fitted)> = steady.into_iter().zip(&fit.lines).collect();
+        lines.retain(|(_, line)| !is_harmonic(line));
+        lines.sort_by(|one, other| one.0.cmp(&other.0).then(other.1.energy.total_cmp(&one.1.energy)));
+        let power: f64 = lines.iter().map(|(_, line)| line.energy).sum();
+        let mode = |(is_steady, line): &(bool, &Fitted)| {
             let Line { omega, decay } = line.line;
             let natural = omega.hypot(decay);
             let level = noise.noise(omega, fit.count);
@@ -248,6 +272,7 @@ impl Samples {
                 },
                 amplitude: line.amplitude() * self.size,
                 share: line.energy / power,
+                is_steady: *is_steady,
             }
         };
         let is_finite = |mode: &Mode| {

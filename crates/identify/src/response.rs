@@ -4,6 +4,8 @@
 //! ẍ = −c·ẋ − k·x + g·u(t) + b from x₀, v₀, integrated together with its derivatives with respect to the six
 //! numbers. A regression over windows gives the first guess; it weighs the noise less well, since it differentiates.
 
+mod jumps;
+
 use crate::observed::{input, order};
 use crate::scaled::{inverse, solve};
 use crate::{Basis, Estimated, LinearOscillator};
@@ -63,6 +65,8 @@ const DAMPINGS: [f64; 2] = [0.1, 0.5];
 const UNEXPLAINED: f64 = 0.8;
 /// Ratio of the mean squares that two fits leave, from which the part that the second leaves out is no part of the motion.
 const BETTER: f64 = 2.0;
+/// Variance of residuals, in that of the noise, from which they are more than noise.
+const BEYOND: f64 = 1.3;
 /// First guesses of the natural frequency of a record that does not swing, in radians per record, for a damping ratio
 /// of 1.
 const CREEPING: [f64; 4] = [3.0, 8.0, 20.0, 60.0];
@@ -77,8 +81,9 @@ pub(crate) fn driven(
     let pushes = input(record, clock)?;
     let guess = guess.map(|guess| [guess.stiffness.value, guess.damping.value.max(0.0)]);
     let (slowest, fastest) = (SLOWEST / clock.duration_s(), FASTEST * clock.sample_rate_hz);
+    let noise = noise_of(record);
     let fits = [true, false].map(|kept| {
-        let problem = Problem::new(record, clock, (&pushes, kept), 0);
+        let problem = Problem::new(record, clock, (&pushes, kept), 0, noise);
         let grid = (0..GRID).flat_map(|number| {
             let omega = slowest * (fastest / slowest).powf(f64::from(number) / f64::from(GRID - 1));
             DAMPINGS.map(|ratio| [omega * omega, 2.0 * ratio * omega])
@@ -87,11 +92,17 @@ pub(crate) fn driven(
         let best = grid.min_by(|one, other| left(one).total_cmp(&left(other)));
         nearest(guess.into_iter().chain(best).filter_map(|start| problem.fitted(start)))
     });
-    let (rest, found) = nearest(fits.into_iter().flatten())?;
+    let found = nearest(fits.into_iter().flatten())?;
+    let jumping = jumps::jumping(record, clock, &pushes, &found.1);
+    let (rest, found) = nearest(jumping.into_iter().chain([found]))?;
     // A response misses much more of a system that is not linear than a regression over short windows.
-    let noise = noise_level(record.values()).max(record.quantum());
     let is_linear = rest < record.len() as f64 * (LINEAR * noise).powi(2);
     sprung(Some((rest, found)), record).filter(|_| is_linear || guess.is_none())
+}
+
+/// Returns the noise of the observed column, of which rounding is a part.
+fn noise_of(record: &Record) -> f64 {
+    noise_level(record.values()).max(record.quantum())
 }
 
 /// Fits a motion that returns to rest in a few cycles or without a swing, from first guesses and from others. `None` if
@@ -105,7 +116,7 @@ pub(crate) fn returning<'a>(
     let guesses = guesses.into_iter().map(|guess| [guess.stiffness.value, guess.damping.value]);
     let starts: Vec<[f64; 2]> = guesses.chain(creeping).collect();
     let fit = |from: usize| {
-        let problem = Problem::new(record, clock, (&[], false), from);
+        let problem = Problem::new(record, clock, (&[], false), from, noise_of(record));
         let found = nearest(starts.iter().filter_map(|start| problem.fitted(*start)))?;
         Some((found.0 / problem.samples as f64, found))
     };
@@ -148,6 +159,10 @@ struct Problem {
     is_driven: bool,
     /// Number of time derivatives that the observed quantity already has.
     order: usize,
+    /// Noise of the samples.
+    noise: f64,
+    /// Time between samples, in seconds.
+    interval: f64,
 }
 
 /// Sums of a simulation over the samples.
@@ -182,7 +197,13 @@ impl State {
 
 impl Problem {
     /// Takes the samples from a number on; `kept` is `true` if an input stays between its samples.
-    fn new(record: &Record, clock: &Clock, (pushes, kept): (&[(f64, f64)], bool), from: usize) -> Self {
+    fn new(
+        record: &Record,
+        clock: &Clock,
+        (pushes, kept): (&[(f64, f64)], bool),
+        from: usize,
+        noise: f64,
+    ) -> Self {
         let samples: Vec<(f64, f64)> =
             clock.times_s.iter().copied().zip(record.values().iter().copied()).skip(from).collect();
         let at: Vec<(f64, f64)> = if pushes.is_empty() {
@@ -198,7 +219,14 @@ impl Problem {
             let value = rest.next_if(|sample| sample.0 <= time).map(|sample| sample.1);
             knots.push(Knot { time, push, rate, value });
         }
-        Self { knots, samples: samples.len(), is_driven: !pushes.is_empty(), order: order(record.quantity()) }
+        Self {
+            knots,
+            samples: samples.len(),
+            is_driven: !pushes.is_empty(),
+            order: order(record.quantity()),
+            noise,
+            interval: 1.0 / clock.sample_rate_hz,
+        }
     }
 
     /// Fits all numbers from a stiffness and a damping; returns the sum of the squared residuals, and the oscillator.
@@ -258,7 +286,8 @@ impl Problem {
         let inverse = inverse(&self.normal(sums, &free)?)?;
         // Residuals of which neighbors are alike tell less: those of a first-order autoregression.
         let alike = (sums.next / sums.rest).clamp(0.0, 0.999);
-        let variance = sums.rest / freedom * (1.0 + alike) / (1.0 - alike);
+        let own = sums.rest / freedom;
+        let variance = (own * (1.0 + alike) / (1.0 - alike)).max(self.resonant(numbers, own));
         let std_error = |number: usize| {
             let at = free.iter().position(|free| *free == number)?;
             Some((variance * inverse.get((at, at))?).sqrt())
@@ -274,6 +303,20 @@ impl Problem {
             input_gain: estimated(numbers.gain, GAIN),
             basis: Basis::Response(self.samples),
         })
+    }
+
+    /// Returns the variance of a sample at the resonance if residuals of a variance `own` are, beyond the noise, an answer of
+    /// the system to pushes that the input does not hold, such as its own noise: white pushes make the variance s² and the
+    /// density 2 s² / (ζω₀) at ω₀, that of white noise with the variance s² / (ζω₀ Δt) for samples Δt apart.
+    ///
+    /// Source: Lin, Probabilistic Theory of Structural Dynamics, McGraw-Hill 1967, section 5.1.
+    fn resonant(&self, numbers: &Numbers, own: f64) -> f64 {
+        let noise = self.noise * self.noise;
+        let memory = 2.0 / (numbers.damping.abs() * self.interval);
+        if !self.is_driven || own < BEYOND * noise {
+            return own;
+        }
+        noise + (own - noise) * memory.clamp(1.0, self.samples as f64)
     }
 
     /// Simulates the record; `None` if the motion runs away.

@@ -67,7 +67,7 @@ pub(crate) struct Turn {
     /// Index of the sample.
     pub(crate) at: usize,
     /// Indices of the first and last sample of the plateau around it.
-    plateau: [usize; 2],
+    pub(crate) plateau: [usize; 2],
 }
 
 /// Finds the free swings of a record, if there is something beside them: a change of energy within one half

@@ -7,6 +7,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod clipped;
 mod clock;
 mod coding;
 mod columns;
@@ -47,6 +48,7 @@ mod times;
 mod unit;
 mod words;
 
+pub use clipped::Clipped;
 pub use clock::{Clock, ClockChoice, ClockKind};
 pub use columns::{CsvColumns, Filter, Missing};
 pub use error::{Fault, RecordError};

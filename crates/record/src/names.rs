@@ -6,6 +6,7 @@ pub(crate) const TIMES: &[&str] = &[
     "t",
     "timestamp",
     "stamp",
+    "ts",
     "elapsed",
     "seconds",
     "second",
@@ -55,10 +56,12 @@ pub(crate) const POSITIONS: &[&str] = &[
 ];
 
 /// Names of columns of velocities.
-pub(crate) const VELOCITIES: &[&str] = &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot"];
+pub(crate) const VELOCITIES: &[&str] =
+    &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot", "gx", "gy", "gz"];
 
 /// Names of columns of accelerations.
-pub(crate) const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
+pub(crate) const ACCELERATIONS: &[&str] =
+    &["acceleration", "accel", "acc", "accelerometer", "ax", "ay", "az"];
 
 /// Names of columns of torques and forces, which are inputs.
 pub(crate) const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
@@ -74,6 +77,7 @@ pub(crate) const INPUTS: &[&str] = &[
     "target",
     "action",
     "desired",
+    "des",
     "soll",
     "sollwert",
     "current",
@@ -91,6 +95,10 @@ pub(crate) const COUNTERS: &[&str] = &[
 
 /// Words in the names of lengths, for columns without a unit.
 pub(crate) const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];
+
+/// Words in the names of signals of sensors, which are voltages if they state no unit.
+pub(crate) const SIGNALS: &[&str] =
+    &["ampl", "amplitude", "channel", "ch", "ch1", "ch2", "ch3", "ch4", "signal", "spannung"];
 
 /// Words for the length of a vector whose components are columns too.
 pub(crate) const OF_VECTORS: &[&str] = &["absolute", "abs", "magnitude", "norm", "betrag", "total"];

@@ -19,8 +19,9 @@ const EVEN: f64 = 2.2;
 /// The same ratio, and the part of the range that a residual has to be as well, from which something moved the system.
 const STRUCK: f64 = 8.0;
 const SEEN: f64 = 0.02;
-/// Growth of the motion at a strike, and the parts before and after it in which that is seen.
+/// Growth of the motion at a strike, the part of it that a stop leaves, and the parts before and after in which that is seen.
 const GROWS: f64 = 1.3;
+const STOPS: f64 = 0.1;
 const AROUND: usize = 4;
 /// Samples from one value of the recursion to the next, from which three neighbors are nearly equal.
 const DENSE: usize = 3;
@@ -39,8 +40,8 @@ pub(crate) fn is_one_motion(values: &[f64], half_swing: f64) -> bool {
 }
 
 /// Returns the pieces of a series between strikes, whatever the modes of the system, by the indices of their first and last
-/// sample: between parts with large residuals after which it swings farther than before. A stop that is hit takes energy.
-/// None if there is no such part, and for a series with so few samples in a half swing that a wrong value could not be
+/// sample: between parts with large residuals after which it swings farther than before, or hardly any more. A stop that
+/// is hit takes energy, but not all of it. None if there is no such part, and for a series with so few samples in a half swing that a wrong value could not be
 /// told from the motion.
 pub(crate) fn between_strikes(values: &[f64], half_swing: f64) -> Vec<[usize; 2]> {
     let step = step(half_swing);
@@ -56,8 +57,11 @@ pub(crate) fn between_strikes(values: &[f64], half_swing: f64) -> Vec<[usize; 2]
     let [lowest, highest] = extremes(&series);
     let least = (STRUCK * usual).max(SEEN * (highest - lowest));
     let order = found.order;
+    // What a hand moves slowly hardly counts among velocities.
+    let velocities: Vec<f64> =
+        series.iter().zip(series.iter().skip(1)).map(|(one, next)| next - one).collect();
     let energy = |from: usize, to: usize| {
-        let part = series.get(from..to.min(series.len())).unwrap_or_default();
+        let part = velocities.get(from..to.min(velocities.len())).unwrap_or_default();
         deviation(part)
     };
     // A sample is predicted by those of the part before, so that a strike also shows in the part after it.
@@ -70,7 +74,8 @@ pub(crate) fn between_strikes(values: &[f64], half_swing: f64) -> Vec<[usize; 2]
     let strikes: Vec<[usize; 2]> = runs
         .filter(|&(is_large, from, to)| {
             let before = energy(from.saturating_sub(AROUND * order), from);
-            is_large && energy(to, to + AROUND * order) > GROWS * before
+            let after = energy(to, to + AROUND * order);
+            is_large && (after > GROWS * before || after < STOPS * before)
         })
         .map(|(_, from, to)| [from * step, to * step])
         .collect();

@@ -3,7 +3,9 @@
 use crate::columns::CsvColumns;
 use crate::error::Fault;
 use crate::heading::Heading;
-use crate::names::{ACCELERATIONS, INPUTS, LENGTHS, OF_VECTORS, POSITIONS, TIMES, TORQUES, VELOCITIES};
+use crate::names::{
+    ACCELERATIONS, INPUTS, LENGTHS, OF_VECTORS, POSITIONS, SIGNALS, TIMES, TORQUES, VELOCITIES,
+};
 use crate::options::ReadOptions;
 use crate::reading::Coordinate;
 use crate::record::Quantity;
@@ -90,14 +92,18 @@ pub(crate) fn is_time(heading: &Heading) -> bool {
 /// Half the range of values, in radians, above which angles without a unit are taken to be in degrees.
 const DEGREES_BEYOND: f64 = std::f64::consts::TAU;
 
-/// Returns the unit of a column that states none: the SI unit, or degrees for angles that would be turns, of
-/// which not all are whole numbers as counts are.
+/// Returns the unit of a column that states none: the SI unit, volts for the channel of an oscilloscope or of a sound, or
+/// degrees for angles that would be turns, of which not all are whole numbers as counts are.
 pub(crate) fn assumed_unit(
     heading: &Heading,
     quantity: Quantity,
     coordinate: Option<Coordinate>,
     values: &[f64],
 ) -> Unit {
+    let is_signal = observed(heading).is_none() && rank(heading, SIGNALS).is_some();
+    if is_signal && quantity == Quantity::Position && coordinate != Some(Coordinate::Angle) {
+        return Unit::Volt;
+    }
     let length = rank(heading, LENGTHS).is_some()
         || quantity == Quantity::Acceleration && rank(heading, ACCELERATIONS).is_some();
     let coordinate = coordinate.unwrap_or(if length { Coordinate::Displacement } else { Coordinate::Angle });

@@ -4,6 +4,7 @@ use askama::Template;
 
 use crate::figures::{Figure, figures, lead};
 use crate::frame::{Frame, finish};
+use crate::modes::{ModeView, mode_views};
 use crate::parse::Run;
 use crate::plot::Axis;
 use crate::remarks::is_believed;
@@ -21,6 +22,7 @@ struct RunPage<'a> {
     comparison: Vec<ComparisonRow>,
     /// Titles and facts.
     cards: Vec<(&'static str, Vec<Fact>)>,
+    modes: Vec<ModeView>,
     seeds: Vec<SeedView>,
     /// The plot below the verdict, if there is one.
     lead: Vec<Figure>,
@@ -53,6 +55,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
         .into_iter()
         .chain(result.truth.as_ref().map(|known| ("Truth of the simulated record", tables::truth(known))))
         .collect(),
+        modes: mode_views(&result.modes),
         seeds: tables::seeds(&result.seeds),
         lead,
         figures: part(&result.data).into_iter().chain(figures).collect(),

@@ -6,7 +6,7 @@ use results::{
 };
 
 use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
-use crate::modes::{half_power_width, mode_words, quality_factor};
+use crate::modes::{half_power_width, quality_factor};
 
 /// A quantity and its value, as shown on the page.
 pub(crate) struct Fact {
@@ -112,7 +112,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
 /// Returns facts about the envelope that every method was fitted to.
 pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
     let envelope = &result.envelope;
-    let mut facts = vec![
+    vec![
         fact("Pipeline", envelope.pipeline_in_words()),
         fact("Peaks", whole(envelope.peaks)),
         fact("Samples after interpolation", whole(envelope.samples)),
@@ -120,9 +120,7 @@ pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
         fact("Angular frequency ω", quantity(&significant(envelope.omega_rad_s, 6), "rad/s")),
         fact("Rest position removed", quantity(&significant(envelope.offset, 4), &result.data.unit)),
         fact("First peak after the first sample", quantity(&significant(envelope.first_peak_s, 4), "s")),
-    ];
-    facts.extend(mode_words(&result.modes).into_iter().map(|words| fact("Mode", words)));
-    facts
+    ]
 }
 
 /// Returns facts about the training of the estimate.

@@ -16,6 +16,9 @@ pub struct ModeRow {
     pub resonance: Option<Resonance>,
     /// Share of the modes' power over the record, between 0 and 1.
     pub share: f64,
+    /// `true` for a line that keeps its amplitude while others decay, as the hum of the mains does: no mode.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub steady: bool,
 }
 
 /// Sharpness of the resonance of a linear oscillator with viscous damping.

@@ -2,7 +2,8 @@
 
 use crate::host::Answered;
 use crate::picture::picture;
-use crate::reading::reading;
+use crate::reading::{experiment, reading};
+use experiment::EnvelopeSettings;
 use report::format::with_uncertainty;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -19,11 +20,11 @@ pub(crate) struct LookRequest {
 
 /// Looks at each log: what was found, or why it cannot be read.
 pub(crate) fn looked(logs: &[Log], request: &LookRequest) -> Answered {
-    let reading = reading(&request.reading)?;
+    let (reading, experiment) = (reading(&request.reading)?, experiment(&request.reading)?);
     let found: Vec<Value> = logs
         .iter()
         .map(|log| match Looked::of(log, &reading) {
-            Ok(found) => shown(log, &found),
+            Ok(found) => shown(log, &found, &experiment.envelope),
             Err(error) => {
                 json!({ "name": log.name, "error": error.to_string(), "titles": titles(log) })
             }
@@ -37,8 +38,10 @@ fn titles(log: &Log) -> Vec<String> {
     record::titles(&log.name, &log.bytes).map(|found| found.titles).unwrap_or_default()
 }
 
-fn shown(log: &Log, found: &Looked) -> Value {
-    let findings: Vec<String> = found.findings().into_iter().chain(found.remarks()).collect();
+fn shown(log: &Log, found: &Looked, settings: &EnvelopeSettings) -> Value {
+    let decay = settings.extract(settings.pipeline, &found.look.record, &found.look.clock).ok();
+    let remarks = found.remarks(decay.as_ref().map(|decay| &decay.envelope));
+    let findings: Vec<String> = found.findings().into_iter().chain(remarks).collect();
     let told = |estimated: Option<identify::Estimated>| {
         estimated.map(|estimated| with_uncertainty(estimated.value, estimated.std_error))
     };

@@ -1,13 +1,17 @@
 //! Input of an estimate, from the record to an envelope and the answer of closed-form least squares, and the parts of an
 //! estimate that do not depend on who asks for it.
 
+use crate::look::of_decay;
+use crate::modes::modes;
 use envelope::{Envelope, EnvelopeError, Extraction};
 use estimator::{Estimate, Prediction, Reached, Stop, Uncertainty};
 use experiment::{EnvelopeSettings, Pipeline};
 use oracle::classical::{self, ClassicalFit};
 use oracle::{DecayFit, OracleError};
 use record::{Clock, ClockChoice, Record, RecordError, Source, Statements};
-use results::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
+use results::{
+    DataSummary, EnvelopeRow, EnvelopeSummary, ModeRow, OracleSummary, PipelineOutcome, PipelineRow,
+};
 use thiserror::Error;
 
 /// Reason why a record gives no estimate. Messages name keys of a configuration.
@@ -52,6 +56,8 @@ pub struct Input {
     /// in force comes first. Empty before [`Self::with_pipelines`]. That is called before any fit: for a long
     /// record it takes seconds, for which nobody who stops a fit should have to wait.
     pub pipelines: Vec<PipelineRow>,
+    /// Modes of the record, the most powerful first; empty if it shows only one, and before [`Self::with_pipelines`].
+    pub modes: Vec<ModeRow>,
 }
 
 impl Input {
@@ -75,13 +81,27 @@ impl Input {
             .map_err(|error| EstimateError::Envelope { file: file(), source: error })?;
         let oracle = oracle::decay_rate(&extraction.envelope)
             .map_err(|error| EstimateError::Oracle { file: file(), source: error })?;
-        Ok(Self { record, source, clock, believed, extraction, oracle, pipelines: Vec::new() })
+        Ok(Self {
+            record,
+            source,
+            clock,
+            believed,
+            extraction,
+            oracle,
+            pipelines: Vec::new(),
+            modes: Vec::new(),
+        })
     }
 
-    /// Adds the results of the other pipelines and clocks.
+    /// Adds the results of the other pipelines and clocks, the modes, and to the findings of the source the remarks of a
+    /// first look on what no single oscillator describes.
     #[must_use]
-    pub fn with_pipelines(self, settings: &EnvelopeSettings) -> Self {
-        Self { pipelines: self.all_pipelines(settings), ..self }
+    pub fn with_pipelines(mut self, settings: &EnvelopeSettings) -> Self {
+        self.pipelines = self.all_pipelines(settings);
+        self.modes = modes(&self.record, &self.clock);
+        let remarks = of_decay(&self.record, &self.clock, self.modes.len(), Some(&self.extraction.envelope));
+        self.source.findings.extend(remarks);
+        self
     }
 
     fn all_pipelines(&self, settings: &EnvelopeSettings) -> Vec<PipelineRow> {

@@ -136,6 +136,7 @@ pub fn basis(oscillator: &LinearOscillator) -> String {
         Basis::Samples(count) => format!("from damped sinusoids fitted to the samples of {count} windows"),
         Basis::Response(count) => format!("from the simulated response nearest to {count} samples"),
         Basis::Windows(count) => format!("by regression over {count} windows of the record"),
+        Basis::Modes(1) => "from a damped sinusoid fitted beside steady lines".to_owned(),
         Basis::Modes(count) => format!("of the strongest of {count} modes"),
     }
 }

@@ -20,13 +20,13 @@ fn number(found: Estimated) -> WithInterval {
     WithInterval::normal(found.value, found.std_error)
 }
 
-/// Returns modes as rows of a result; none for a single mode.
+/// Returns modes and steady lines as rows of a result; none for a single mode.
 #[must_use]
 pub fn mode_rows(modes: &[identify::Mode]) -> Vec<ModeRow> {
     let row = |mode: &identify::Mode| {
         let (frequency_hz, damping_ratio) = (number(mode.frequency_hz), number(mode.damping_ratio));
-        let resonance = Resonance::of(frequency_hz, damping_ratio);
-        ModeRow { frequency_hz, damping_ratio, resonance, share: mode.share }
+        let resonance = Resonance::of(frequency_hz, damping_ratio).filter(|_| !mode.is_steady);
+        ModeRow { frequency_hz, damping_ratio, resonance, share: mode.share, steady: mode.is_steady }
     };
     if modes.len() > 1 { modes.iter().map(row).collect() } else { Vec::new() }
 }

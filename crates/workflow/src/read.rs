@@ -263,6 +263,9 @@ pub fn centered(record: &Record) -> Result<Record, Fault> {
 /// Share of half their range that values have to exceed, on either side, for a half swing to count.
 const HALF_SWING: f64 = 0.1;
 
+/// Relative distance of a mean acceleration from gravity up to which the axis lies along it.
+const ALONG_GRAVITY: f64 = 0.15;
+
 /// Returns a warning if a velocity or an acceleration has a mean that no free swing has, as from a sensor's
 /// bias or gravity. Returns `None` for velocities with an input, which may push to one side; an acceleration averages
 /// about zero all the same.
@@ -287,10 +290,17 @@ pub fn bias(record: &Record) -> Option<String> {
     let most = 2.0 / (std::f64::consts::PI * swings.saturating_sub(1).max(1) as f64) * half;
     (mean.abs() > most).then(|| {
         let what = if record.quantity() == Quantity::Velocity { "velocity" } else { "acceleration" };
+        let is_along_gravity = record.unit() == Unit::MeterPerSecondSquared.si()
+            && (mean.abs() / Unit::StandardGravity.to_si() - 1.0).abs() < ALONG_GRAVITY;
+        let doubled = if is_along_gravity {
+            ". A sensor on a pendulum sees along gravity twice the frequency of the swing: compare the other axes with --value"
+        } else {
+            ""
+        };
         format!(
             "the values average {}, but the {what} of what swings averages about zero: the sensor has a \
              bias or measures gravity, and a diagnosis would name an effect for it; subtract it with \
-             --remove-mean",
+             --remove-mean{doubled}",
             quantity(&significant(mean, 3), record.unit())
         )
     })

@@ -254,3 +254,21 @@ fn a_long_record_takes_seconds() {
     let elapsed = started.elapsed();
     assert!(elapsed.as_secs() < 30, "{elapsed:?}");
 }
+
+/// Regression: a hum was called a mode, and a strong one the first.
+#[test]
+fn a_line_that_keeps_its_amplitude_beside_a_decay_is_no_mode() {
+    let times = even(6000, 1000.0);
+    let of = |truths: &[Truth]| {
+        let values = noisy(times.iter().map(|time| sum(truths, *time)), 0.01, 4);
+        found(times.clone(), values)
+    };
+    for hum in [0.15, 0.6] {
+        let found = of(&[(17.0, 0.01, 1.0, 0.3), (50.0, 0.0, hum, 1.0)]);
+        assert_eq!(found.iter().map(|mode| mode.is_steady).collect::<Vec<_>>(), [false, true], "{found:?}");
+        assert!(within(found[0].damping_ratio, 0.01), "{found:?}");
+    }
+    let slow = of(&[(17.0, 0.01, 1.0, 0.3), (50.0, 0.0005, 0.3, 1.0)]);
+    assert!(slow.len() == 2 && slow.iter().all(|mode| !mode.is_steady), "{slow:?}");
+    assert!(of(&[(17.0, 0.0, 1.0, 0.3)]).iter().all(|mode| !mode.is_steady));
+}

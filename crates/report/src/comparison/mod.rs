@@ -14,10 +14,12 @@ mod sample;
 mod tests;
 
 use askama::Template;
+
 use results::Caution;
 
 use crate::figures::{Figure, lead};
 use crate::frame::{Frame, finish};
+use crate::modes::{ModeView, mode_views};
 use crate::parse::Comparison;
 use crate::remarks::is_believed;
 use crate::tables::Fact;
@@ -34,6 +36,7 @@ pub use verdict::beside_least_squares;
 struct ComparisonPage<'a> {
     frame: Frame<'a>,
     oscillation: [WordTable; 2],
+    modes: Vec<ModeView>,
     methods: Vec<MethodTable>,
     reading: &'static str,
     guidelines: WordTable,
@@ -58,6 +61,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<St
         )
         .disagreeing(result.disagreement.as_ref(), is_believed(&result.pipelines, &result.data)),
         oscillation: [oscillation::parameters(result), oscillation::derived(result)],
+        modes: mode_views(&result.modes),
         methods: methods::tables(result),
         reading: methods::READING,
         guidelines: guidelines::guidelines(result),

@@ -17,6 +17,7 @@ use results::{DiagnosisResult, VerdictStatus};
 use crate::classes::{effect_title, is_calibrated_already, listed, unlikely_classes};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
+use crate::modes::{ModeView, mode_views};
 use crate::parse::Diagnosis;
 use crate::remarks::is_of_the_chain_only;
 use crate::tables::Fact;
@@ -44,6 +45,7 @@ struct DiagnosisPage<'a> {
     /// The plot below the verdict, if there is one.
     lead: Vec<Figure>,
     record_figures: Vec<Figure>,
+    modes: Vec<ModeView>,
     place_figures: Vec<Figure>,
     portrait_figures: Vec<Figure>,
     no_backbone: bool,
@@ -91,6 +93,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         experiments: tables::experiments(result),
         lead,
         record_figures,
+        modes: mode_views(&result.modes),
         place_figures: maps::figures(result),
         portrait_figures: portrait::figures(result),
         no_backbone: result.backbone.measured.is_empty(),

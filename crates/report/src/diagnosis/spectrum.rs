@@ -1,6 +1,6 @@
 //! Spectrum of a record, with its modes.
 
-use results::{DiagnosisResult, SeriesRow};
+use results::{DiagnosisResult, ModeRow, SeriesRow};
 use std::f64::consts::TAU;
 
 use super::figures::{framed, observed_axis};
@@ -21,12 +21,14 @@ pub(super) fn figure(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Fig
     let plot = Plot {
         x: Axis::linear("frequency (Hz)"),
         y: Axis::log(format!("amplitude of {}", observed_axis(result).label)),
-        series: vec![Series {
+        series: std::iter::once(Series {
             label: "recorded".to_owned(),
             hue: Hue::Data,
             mark: Mark::Line,
             points: spectrum.clone(),
-        }],
+        })
+        .chain(marked(&result.modes, &spectrum))
+        .collect(),
         shaded: vec![],
     };
     let drawing = plot.draw("Spectrum: amplitude over frequency.")?;
@@ -42,6 +44,23 @@ pub(super) fn figure(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Fig
         vec![number(*frequency), number(*amplitude)]
     });
     Some(framed("spectrum", "Spectrum".to_owned(), explanation, drawing, table))
+}
+
+/// Returns marks on a spectrum at the modes and at the steady lines, if there are some within it.
+fn marked(modes: &[ModeRow], spectrum: &[(f64, f64)]) -> Vec<Series> {
+    let point = |mode: &ModeRow| {
+        let frequency = mode.frequency_hz.value;
+        let from = spectrum.partition_point(|(line, _)| *line < frequency);
+        spectrum.get(from).map(|(_, amplitude)| (frequency, *amplitude))
+    };
+    let of = |label: &str, hue: Hue, steady: bool| Series {
+        label: label.to_owned(),
+        hue,
+        mark: Mark::Dots,
+        points: modes.iter().filter(|mode| mode.steady == steady).filter_map(point).collect(),
+    };
+    let marks = [of("modes", Hue::Estimate, false), of("steady lines", Hue::Second, true)];
+    marks.into_iter().filter(|series| !series.points.is_empty()).collect()
 }
 
 /// Returns frequencies in Hz and amplitudes, from one line over the record to a few times the strongest one.

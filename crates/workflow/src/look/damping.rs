@@ -3,8 +3,10 @@
 use envelope::Envelope;
 use report::format::with_uncertainty;
 
-/// Fewest peaks of a part of a decay.
-const FEWEST: usize = 5;
+/// Fewest peaks of a part of a decay, the number that a part of a short decay has, and the fewest that tell a frequency.
+const FEWEST: usize = 3;
+const SHORT: usize = 4;
+const FEWEST_OF_A_FREQUENCY: usize = 5;
 /// Difference of two parts, in standard errors, from which one number does not describe both.
 const APART: f64 = 6.0;
 /// Difference of their damping ratios that it needs as well, as a part of the smaller one.
@@ -15,24 +17,28 @@ const ANOTHER_FREQUENCY: f64 = 0.005;
 /// Distance of the time between two turning points from a whole number of half periods, in these.
 const TURN: f64 = 0.25;
 
-/// Returns remarks if the damping ratio or the frequency in the last third of a decay differs from that in the first.
+/// Returns remarks if the damping ratio or the frequency in the last third of a decay differs from that in the first; of
+/// a decay of few swings, in the last half from that in the first.
 #[must_use]
-pub fn changing(envelope: &Envelope) -> Vec<String> {
-    let third = envelope.len() / 3;
-    if third < FEWEST {
+pub(super) fn changing(envelope: &Envelope) -> Vec<String> {
+    let count = envelope.len();
+    let size = (count / 3).max(SHORT.min(count / 2));
+    // The scatter of so few peaks alone tells no error.
+    if size < FEWEST || (size <= SHORT && envelope.log_std_errors().is_none()) {
         return Vec::new();
     }
-    let thirds = [0, envelope.len() - third].map(|from| part(envelope, from, from + third));
-    let [Some(first), Some(last)] = thirds else { return Vec::new() };
+    let parts = [0, count - size].map(|from| part(envelope, from, from + size));
+    let [Some(first), Some(last)] = parts else { return Vec::new() };
+    let of = if 3 * size > count { "half" } else { "third" };
     let damping = apart(ratio(&first), ratio(&last), ANOTHER_DAMPING).map(|[first, last]| {
         format!(
-            "the damping ratio changes along the decay, from {first} in its first third to {last} in its last: no single number \
+            "the damping ratio changes along the decay, from {first} in its first {of} to {last} in its last: no single number \
              describes it. Dry friction makes it rise and drag makes it fall; a diagnosis tells them apart"
         )
     });
     let frequency = apart(frequency_hz(&first), frequency_hz(&last), ANOTHER_FREQUENCY).map(|[first, last]| {
         format!(
-            "the frequency changes along the decay, from {first} Hz in its first third to {last} Hz in its last, as that of a \
+            "the frequency changes along the decay, from {first} Hz in its first {of} to {last} Hz in its last, as that of a \
              wide swing does; a small swing has the last one or what lies beyond it. A diagnosis finds the restoring force"
         )
     });
@@ -93,7 +99,7 @@ fn frequency_hz(decay: &Envelope) -> Option<[f64; 2]> {
         let count = pair.iter().rev().copied().reduce(|last, first| last - first).map(|step| step / rough);
         count.is_some_and(|count| count.round() > 0.0 && (count - count.round()).abs() < TURN)
     };
-    if !decay.times_s().windows(2).all(is_turn) {
+    if decay.len() < FEWEST_OF_A_FREQUENCY || !decay.times_s().windows(2).all(is_turn) {
         return None;
     }
     let half = identify::half_period(decay, rough)?;
@@ -124,6 +130,21 @@ mod tests {
             let said = changing(&decay(amplitude));
             assert!(said.len() == 1 && said[0].contains("damping ratio"), "{said:?}");
         }
+    }
+
+    /// Regression: nothing was said of a swing that dry friction stops within five cycles.
+    #[test]
+    fn friction_that_stops_a_swing_soon_changes_it() {
+        let decay = |amplitude: &dyn Fn(f64) -> f64| {
+            let times: Vec<f64> = (0..9).map(|at| 0.5 * f64::from(at)).collect();
+            let noise = |time: f64| 1e-3 * (7.7 * time).sin();
+            let logarithms = times.iter().map(|time| (amplitude(*time) + noise(*time)).ln()).collect();
+            let errors = times.iter().map(|time| 1e-3 / amplitude(*time)).collect();
+            Envelope::new(times, logarithms, std::f64::consts::TAU).unwrap().with_log_std_errors(errors)
+        };
+        let said = changing(&decay(&|time| 0.52 - 0.12 * time));
+        assert!(said.len() == 1 && said[0].contains("in its first half"), "{said:?}");
+        assert!(changing(&decay(&|time| 0.5 * (-0.6 * time).exp())).is_empty());
     }
 
     /// A pendulum of 75 degrees swings slower by a tenth than one of 5.

@@ -25,7 +25,7 @@ pub struct Looked {
     pub without_input: bool,
     /// Nearest linear oscillator: that of the strongest mode if there are several.
     pub oscillator: LinearOscillator,
-    /// Modes of a free decay.
+    /// Modes of a free decay, and steady lines beside them.
     pub modes: Vec<Mode>,
 }
 
@@ -155,7 +155,9 @@ fn identified(log: &Log, look: Look) -> Result<Looked, WorkflowError> {
         .map_err(|source| WorkflowError::Identify { file: log.name.clone(), source })?;
     let modes = identify::modes(&look.record, &look.clock);
     let oscillator = match modes.as_slice() {
-        [strongest, _, ..] => strongest.oscillator(oscillator, modes.len()),
+        [strongest, _, ..] => {
+            strongest.oscillator(oscillator, modes.iter().filter(|mode| !mode.is_steady).count())
+        }
         _ => oscillator,
     };
     Ok(Looked { look, without_input: false, oscillator, modes })

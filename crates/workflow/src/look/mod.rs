@@ -4,5 +4,5 @@ mod damping;
 mod looked;
 mod remarks;
 
-pub use damping::changing;
 pub use looked::Looked;
+pub use remarks::of_decay;

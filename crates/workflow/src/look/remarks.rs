@@ -1,37 +1,124 @@
 //! Remarks on what a log shows, in sentences.
 
+use super::damping::changing;
 use super::looked::{CRITICAL, FEW_CYCLES, Looked};
+use crate::error::in_options;
+use envelope::Envelope;
 use identify::{Mode, regular_part};
+use record::{Clock, Quantity, Record, extremes, noise_level};
+use report::format::{quantity, significant};
 
 /// Relative error of a natural frequency above which it is doubtful whether anything swings: 24 simulated
 /// records of noise, white or red, have 4 to 15 % or no frequency.
 const HARDLY_KNOWN: f64 = 0.03;
 
-/// Returns a remark on the modes of a record that has several.
-fn several(modes: &[Mode]) -> Option<String> {
-    (modes.len() > 1).then(|| {
+/// Noise of an input, as a part of its range, that is no error but the input itself.
+const LARGE_INPUT_NOISE: f64 = 0.05;
+/// Motion by an input's noise, in units of the sensor's, from which it is seen.
+const SEEN: f64 = 0.5;
+
+/// Returns remarks on the modes of a record that has several, and on steady lines.
+fn several(modes: &[Mode]) -> Vec<String> {
+    let (lines, modes): (Vec<&Mode>, Vec<&Mode>) = modes.iter().partition(|mode| mode.is_steady);
+    let several = (modes.len() > 1).then(|| {
         format!(
             "the record holds {} modes; the numbers above are those of the strongest, and so are those of an estimate, \
              before which the others are subtracted",
             modes.len()
         )
+    });
+    let steady = lines.iter().map(|line| {
+        format!(
+            "a line at {} keeps its amplitude while the swing decays, as the hum of the mains or a motor does: it is no \
+             mode, and an estimate subtracts it",
+            quantity(&significant(line.frequency_hz.value, 4), "Hz")
+        )
+    });
+    several.into_iter().chain(steady).collect()
+}
+
+/// Returns remarks on a free decay that no single oscillator describes: a hand that moved it, a sensor that clips or shows
+/// one side alone, a damping ratio or a frequency that changes along its envelope. They name keys of a configuration.
+#[must_use]
+pub fn of_decay(record: &Record, clock: &Clock, modes: usize, envelope: Option<&Envelope>) -> Vec<String> {
+    if record.input().is_some() {
+        return Vec::new();
+    }
+    let remarks = [uneven(record, clock, modes), clipped(record).or_else(|| one_sided(record))];
+    let changes = envelope.map(changing).unwrap_or_default();
+    remarks.into_iter().flatten().chain(changes).collect()
+}
+
+/// Returns a remark if only a part of the record swings evenly, and not because of another mode.
+fn uneven(record: &Record, clock: &Clock, modes: usize) -> Option<String> {
+    let [from, to] = regular_part(record, clock).filter(|_| modes < 2)?;
+    // Times of the clock begin where the stamps do.
+    let shift = record.stamps_s().first()? - clock.start_s();
+    Some(format!(
+        "amplitude or phase change unevenly outside {from:.2} s to {to:.2} s, as if a hand moved it or friction stopped it \
+         there: set `data.from_s` to {from:.2} and `data.to_s` to {to:.2} to read that part alone",
+        from = from + shift,
+        to = to + shift
+    ))
+}
+
+/// Returns a remark if the sensor clips the largest swings.
+fn clipped(record: &Record) -> Option<String> {
+    let found = record.clipped()?;
+    Some(format!(
+        "the values stand at {} in {} half swings, up to {:.2} s, as those of a sensor do whose range ends there: the swing is \
+         larger, and its amplitude is not seen; set `data.from_s` to {:.2} to read what follows",
+        quantity(&significant(found.level, 3), record.unit()),
+        found.half_swings,
+        found.to_s,
+        found.to_s + 0.005
+    ))
+}
+
+/// Returns a remark if the values turn back at one level on one side.
+fn one_sided(record: &Record) -> Option<String> {
+    record.stands_on_one_side().then(|| {
+        "the values turn back at one level on one side, while those of the other fall: a magnitude, a rectified or a clipped \
+         signal does so. A magnitude has twice the frequency of its motion; name a column with a sign with `data.value`"
+            .to_owned()
     })
 }
 
 impl Looked {
-    /// Returns remarks on the motion: too few cycles, no swing, several modes, a hand that moved it, doubtful numbers.
+    /// Returns remarks on the motion, in options of the command line: too few cycles, no swing, several modes, doubtful
+    /// numbers, and those [`of_decay`] with the envelope of an estimate if it has one.
     #[must_use]
-    pub fn remarks(&self) -> Vec<String> {
-        let remarks = [
-            self.few_cycles(),
-            self.no_swing(),
-            several(&self.modes),
-            self.uneven(),
-            self.one_sided(),
-            self.hardly_known(),
-            self.growth(),
-        ];
-        remarks.into_iter().flatten().collect()
+    pub fn remarks(&self, envelope: Option<&Envelope>) -> Vec<String> {
+        let Self { look, modes, .. } = self;
+        let first = [self.few_cycles(), self.no_swing()].into_iter().flatten().chain(several(modes));
+        let then = [self.hardly_known(), self.growth(), self.noisy_input()].into_iter().flatten();
+        let of_decay = of_decay(&look.record, &look.clock, modes.len(), envelope);
+        first.chain(then).chain(of_decay.iter().map(|said| in_options(said))).collect()
+    }
+
+    /// Returns a remark if the noise of the measured input, taken as a push, moves the oscillator visibly: white pushes of
+    /// standard deviation s a sample Δt make a variance of s²·Δt/(2·c·k), per unit of inertia.
+    fn noisy_input(&self) -> Option<String> {
+        let (record, oscillator) = (&self.look.record, &self.oscillator);
+        let (input, gain) = (record.input()?, oscillator.input_gain?.value);
+        let (damping, stiffness) = (oscillator.damping.value, oscillator.stiffness.value);
+        let own = noise_level(input);
+        let [lowest, highest] = extremes(input);
+        let excited = own > LARGE_INPUT_NOISE * (highest - lowest);
+        if record.quantity() != Quantity::Position || excited || !(damping * stiffness > 0.0) {
+            return None;
+        }
+        let moved = gain.abs() * own / (2.0 * damping * stiffness * self.look.clock.sample_rate_hz).sqrt();
+        let ratio = moved / noise_level(record.values()).max(record.quantum());
+        (ratio > SEEN).then(|| {
+            format!(
+                "the measured input has a noise of its own, {}, which taken as a push moves the oscillator by {} times the \
+                 noise of the observed column: no simulator with this input comes closer. Give the commanded input if the \
+                 file has it",
+                significant(own, 2),
+                significant(ratio, 2)
+            )
+        })
     }
 
     /// Returns a warning if the swing grows, which no passive system does.
@@ -54,29 +141,6 @@ impl Looked {
                  hardly oscillates",
                 100.0 * part
             )
-        })
-    }
-
-    /// Returns a remark if only a part of the record swings evenly, and not because of another mode.
-    fn uneven(&self) -> Option<String> {
-        let Looked { look, modes, .. } = self;
-        let [from, to] = regular_part(&look.record, &look.clock).filter(|_| modes.len() < 2)?;
-        // Times of the clock begin where the stamps do.
-        let shift = look.record.stamps_s().first()? - look.clock.start_s();
-        Some(format!(
-            "amplitude or phase change unevenly outside {from:.2} s to {to:.2} s, as if a hand moved it or friction stopped it \
-             there: --from {from:.2} --to {to:.2} read that part alone",
-            from = from + shift,
-            to = to + shift
-        ))
-    }
-
-    /// Returns a remark if the values turn back at one level on one side.
-    fn one_sided(&self) -> Option<String> {
-        self.look.record.stands_on_one_side().then(|| {
-            "the values turn back at one level on one side, while those of the other fall: a magnitude, a rectified or a clipped \
-             signal does so. A magnitude has twice the frequency of its motion; name a column with a sign with --value"
-                .to_owned()
         })
     }
 

@@ -11,6 +11,7 @@ use crate::outcome::Outcome;
 use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
+use envelope::Envelope;
 use identify::Estimated;
 use modes::uncertain;
 use record::Fault;
@@ -20,7 +21,7 @@ use serde_json::{Value, json};
 use shell::{given, path_from, path_word};
 use std::path::{Path, PathBuf};
 use workflow::guess as files;
-use workflow::look::{Looked, changing};
+use workflow::look::Looked;
 use workflow::read::bias;
 use workflow::{Log, WorkflowError};
 
@@ -59,7 +60,9 @@ struct Found {
     /// Frequency and damping of each log; empty for a single log.
     each: Vec<EachLog>,
     folder: PathBuf,
-    /// Remarks from trying the commands: a damping ratio that changes along the decay, and refusals.
+    /// Envelope that the estimate would be fitted to, if there is one.
+    envelope: Option<Envelope>,
+    /// Refusals of the commands that were tried.
     tried: Vec<String>,
     /// Names of the files with their texts.
     files: Vec<(&'static str, String)>,
@@ -111,7 +114,8 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     if surest.without_input {
         reading.input = Some("none".to_owned());
     }
-    Ok(Found { surest, reading, each, folder, tried, files, next }.with_diagnosis(log, bias).with_estimate())
+    let found = Found { surest, reading, each, folder, envelope: None, tried, files, next };
+    Ok(found.with_diagnosis(log, bias).with_estimate())
 }
 
 /// Returns the keys of a configuration that reads a log in the same way.
@@ -205,15 +209,15 @@ impl Found {
         // The folder is not there yet, and a path out of it leads nowhere.
         let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match tried::estimate(&file, &configuration(&absolute)) {
-            Ok(envelope) => {
-                let what = match envelope.because {
+            Ok(found) => {
+                let what = match found.because {
                     Some(_) => "the damping ratio from the samples",
                     None => "the damping ratio from the decay of the peaks",
                 };
                 let text = configuration(&path_from(&self.folder, path));
                 self.files.push(("estimate.toml", text));
                 self.next.push((what, format!("trainer {}", path_word(&file))));
-                self.tried.extend(changing(&envelope.envelope));
+                self.envelope = Some(found.envelope);
             }
             // A motion without a swing has its own remark.
             Err(refusal) if self.surest.swings() => {
@@ -314,7 +318,7 @@ impl Found {
 
     fn findings(&self) -> Vec<String> {
         let found = self.surest.findings().into_iter().chain(apart(&self.each));
-        found.chain(self.surest.remarks()).chain(self.tried.clone()).collect()
+        found.chain(self.surest.remarks(self.envelope.as_ref())).chain(self.tried.clone()).collect()
     }
 }
 

@@ -25,6 +25,9 @@ pub(super) fn rows(modes: &[Mode]) -> Vec<Vec<String>> {
     let row = |(at, mode): (usize, &Mode)| {
         let [frequency, ratio] = [mode.frequency_hz, mode.damping_ratio].map(uncertain);
         let share = percent(100.0 * mode.share);
+        if mode.is_steady {
+            return vec!["steady line".to_owned(), format!("{frequency}, Hz; {share} of the power")];
+        }
         let sharpness = resonance(mode.frequency_hz, mode.damping_ratio).map(|found| {
             format!("; Q {}, half-power width {} Hz", quality_factor(&found), half_power_width(&found))
         });

@@ -219,7 +219,7 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
         disagreement: disagreement(&pipelines, &input.data_summary(experiment.data.statements())),
         truth: None,
         envelope,
-        modes: workflow::modes(&input.record, &input.clock),
+        modes: input.modes.clone(),
         pipelines,
     }
 }

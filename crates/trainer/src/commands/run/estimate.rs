@@ -112,7 +112,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         worst_error_percent: worst,
         disagreement: disagreement(&input.pipelines, &input.data_summary(experiment.data.statements())),
         truth: None,
-        modes: workflow::modes(&input.record, &input.clock),
+        modes: input.modes.clone(),
         pipelines: input.pipelines.clone(),
     }
 }
