@@ -59,8 +59,8 @@ Examples:
   trainer export reports/runs/RUN --to tensorboard,mlflow
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
-usage; 130 interrupted (Ctrl-C, SIGTERM, q and Enter), the best so far is
-saved and --resume goes on."
+usage; 130 interrupted (Ctrl-C, SIGTERM, q and Enter): fits, sweeps and trials
+save the best so far, and --resume goes on; a single diagnosis saves nothing."
 )]
 pub(crate) struct Arguments {
     /// A command other than running a configuration.

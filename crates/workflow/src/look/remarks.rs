@@ -105,7 +105,7 @@ impl Looked {
         let own = noise_level(input);
         let [lowest, highest] = extremes(input);
         let excited = own > LARGE_INPUT_NOISE * (highest - lowest);
-        if record.quantity() != Quantity::Position || excited || !(damping * stiffness > 0.0) {
+        if record.quantity() != Quantity::Position || excited || damping <= 0.0 || stiffness <= 0.0 {
             return None;
         }
         let moved = gain.abs() * own / (2.0 * damping * stiffness * self.look.clock.sample_rate_hz).sqrt();
