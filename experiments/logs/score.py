@@ -199,7 +199,8 @@ def main():
         results = list(pool.map(lambda path: score(chosen, path), paths))
     report(results, chosen.full, chosen.next)
     (chosen.out / "score.json").write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
-    within = [r["answer"]["within_se"] for r in results if r["answer"]]
+    # A magnitude swings at twice the frequency of its motion; a remark is all that it allows.
+    within = [r["answer"]["within_se"] for r in results if r["answer"] and r["variant"] not in ("magnitude", "rectified")]
     failed = any(r["verdict"] in ("silent", "crash") for r in results) or sum(within) < 0.95 * len(within)
     return 1 if chosen.gate and failed else 0
 
