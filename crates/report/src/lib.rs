@@ -53,6 +53,7 @@ pub use classes::{
     unlikely_classes, verdict_sentence,
 };
 pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
+pub use diagnosis::spectrum_plot;
 pub use error::ReportError;
 pub use modes::{half_power_width, quality_factor, sentence as modes_sentence};
 pub use reader::{Reader, in_fields};

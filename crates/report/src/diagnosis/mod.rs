@@ -28,6 +28,7 @@ use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{Reader, ReportError, RunTexts, actuator_sentence, format, in_fields};
 use budget::Share;
 use classes::{Group, Nameless};
+pub use spectrum::plot as spectrum_plot;
 use tables::{CoefficientView, EffectView, GapView, RecordView};
 
 #[derive(Template)]
