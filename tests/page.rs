@@ -348,7 +348,7 @@ fn logs_of_two_systems_are_told_apart_and_one_can_be_left_out() {
     assert!(said.starts_with("Read as recordings of one system: record.csv, other.csv."), "{said}");
     assert!(page.text("#logs .warning").contains("3.46") && page.text("#logs .warning").contains("7.95"));
     page.browser
-        .evaluate("document.querySelector('#logs button[aria-label=\"Leave out other.csv\"]').click()");
+        .evaluate("[...document.querySelectorAll('#logs button')].find((button) => button.textContent === 'Leave out other.csv').click()");
     page.browser.wait_until("document.getElementById('status').textContent === 'Read: record.csv.'", SOON);
     assert_eq!(page.text("#logs .warning"), "");
     let nominal = page.browser.evaluate("document.getElementById('nominal').value");

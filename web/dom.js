@@ -12,8 +12,9 @@ export const make = (name, attributes = {}, ...children) => {
   return element;
 };
 
-// A table that scrolls in itself where it is too wide; the first cell of a row names it.
-export const table = (caption, heads, rows) => make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
+// A table that scrolls in itself where it is too wide; the first cell of a row names it. `of` is what it
+// belongs to.
+export const table = (caption, heads, rows, of) => make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${caption}: ${of}` },
   make("table", {},
     make("caption", {}, caption),
     make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, head)))),

@@ -14,8 +14,8 @@ const shown = (log) => {
     log.because ? make("p", { class: "note" }, `This pipeline, because ${log.because}.`) : null,
     log.remarks.length ? make("ul", { class: "findings" }, ...log.remarks.map((remark) => make("li", {}, remark))) : null,
     table("Least squares on the logarithms of the peaks, by pipeline and clock",
-      ["pipeline, clock", "peaks", "ω, rad/s", "λ, 1/s", "ζ", "its standard error"], pipelines),
-    table("Methods on the peaks in force", ["method", "λ, 1/s", "ζ"], methods));
+      ["pipeline, clock", "peaks", "ω, rad/s", "λ, 1/s", "ζ", "its standard error"], pipelines, log.name),
+    table("Methods on the peaks in force", ["method", "λ, 1/s", "ζ"], methods, log.name));
 };
 
 export const estimatesShown = (logs) => fill($("estimates"), ...logs.map(shown));

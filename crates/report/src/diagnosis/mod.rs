@@ -90,7 +90,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, mut diagnosis: Diagnosis) -> Result<S
                 texts,
                 "where a simulator and records differ, and what closes the gap",
                 headline(result),
-                origin(result),
+                origin(result, texts.reader),
             )
         },
         groups: classes::groups(result),
@@ -147,8 +147,15 @@ fn headline(result: &DiagnosisResult) -> Verdict {
     Verdict { tone, label, sentence: result.verdict.summary.clone() }
 }
 
-fn origin(result: &DiagnosisResult) -> Origin {
-    verdict::origin_of_all(result.records.iter().map(|record| record.origin), None)
+fn origin(result: &DiagnosisResult, reader: Reader) -> Origin {
+    let origin = verdict::origin_of_all(result.records.iter().map(|record| record.origin), None);
+    match (origin.class, reader) {
+        ("unstated", Reader::Page) => Origin {
+            note: "If it was measured, choose so under “origin” and read the log again.",
+            ..origin
+        },
+        _ => origin,
+    }
 }
 
 fn warnings(result: &DiagnosisResult) -> Vec<String> {
