@@ -1,6 +1,6 @@
 //! Reader of a report, and what its sentences can refer to.
 
-/// Where the reader of a report has it from.
+/// Source from which the reader of a report has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Reader {
     /// From the folder of a run, beside the command line.

@@ -25,6 +25,6 @@ pub struct RunTexts<'a> {
     pub series: &'a str,
     /// `environment.json`: the program and the machine of the run. Shown unchanged; may be empty.
     pub environment: &'a str,
-    /// Where the report is read; only that on a diagnosis differs.
+    /// Reader of the report; only that on a diagnosis differs.
     pub reader: Reader,
 }
