@@ -17,18 +17,9 @@ const HARMONICS: f64 = 5.0;
 /// Returns the amplitude spectrum of the first record.
 pub(super) fn figure(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Figure> {
     let first = rows.chunk_by(|one, next| one.record == next.record).next()?;
-    let spectrum = spectrum(first)?;
-    let plot = Plot {
-        x: Axis::linear("frequency (Hz)"),
-        y: Axis::log(format!("amplitude of {}", observed_axis(result).label)),
-        series: vec![Series {
-            label: "recorded".to_owned(),
-            hue: Hue::Data,
-            mark: Mark::Line,
-            points: spectrum.clone(),
-        }],
-        shaded: vec![],
-    };
+    let samples: Vec<(f64, f64)> = first.iter().map(|row| (row.time_s, row.observed)).collect();
+    let modes: Vec<f64> = result.modes.iter().map(|mode| mode.frequency_hz.value).collect();
+    let plot = plot(&samples, &modes, &observed_axis(result).label)?;
     let drawing = plot.draw("Spectrum: amplitude over frequency.")?;
     let which = if result.records.len() > 1 { "first record" } else { "record" };
     let explanation = format!(
@@ -38,23 +29,47 @@ pub(super) fn figure(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Fig
             modes => sentence(modes),
         }
     );
-    let table = csv(&["frequency_hz", "amplitude"], &spectrum, |(frequency, amplitude): &(f64, f64)| {
+    let lines = plot.series.first().map(|series| series.points.as_slice()).unwrap_or_default();
+    let table = csv(&["frequency_hz", "amplitude"], lines, |(frequency, amplitude): &(f64, f64)| {
         vec![number(*frequency), number(*amplitude)]
     });
     Some(framed("spectrum", "Spectrum".to_owned(), explanation, drawing, table))
 }
 
-/// Returns frequencies in Hz and amplitudes, from one line over the record to a few times the strongest one.
-fn spectrum(rows: &[SeriesRow]) -> Option<Vec<(f64, f64)>> {
+/// Returns the plot of the amplitude spectrum of samples (times in seconds, values), with a Hann window, and a dot at each
+/// mode, in Hz. `label` names the values with their unit. `None` for samples without a spectrum.
+#[must_use]
+pub fn plot(samples: &[(f64, f64)], modes: &[f64], label: &str) -> Option<Plot> {
+    let highest = modes.iter().copied().fold(f64::NAN, f64::max);
+    let found = spectrum(samples, Some(highest).filter(|highest| *highest > 0.0))?;
+    let nearest = |mode: &f64| {
+        let off = |line: &&(f64, f64)| (line.0 - mode).abs();
+        let line = found.iter().min_by(|one, other| off(one).total_cmp(&off(other)))?;
+        Some((*mode, line.1))
+    };
+    let marked = modes.iter().filter_map(nearest).collect();
+    let series = |label: &str, hue, mark, points| Series { label: label.to_owned(), hue, mark, points };
+    let marks = series("modes", Hue::Oracle, Mark::Dots, marked);
+    Some(Plot {
+        x: Axis::linear("frequency (Hz)"),
+        y: Axis::log(format!("amplitude of {label}")),
+        series: vec![series("recorded", Hue::Data, Mark::Line, found), marks],
+        shaded: vec![],
+    })
+}
+
+/// Returns frequencies in Hz and amplitudes, from one line over the record to a few times the strongest one, which is
+/// searched for unless a frequency to begin with is known.
+fn spectrum(rows: &[(f64, f64)], known_hz: Option<f64>) -> Option<Vec<(f64, f64)>> {
     let stride = rows.len().div_ceil(MOST_SAMPLES).max(1);
     let count = rows.len() as f64;
-    let mean = rows.iter().map(|row| row.observed).sum::<f64>() / count;
+    let mean = rows.iter().map(|row| row.1).sum::<f64>() / count;
     let samples: Vec<(f64, f64)> = rows
         .chunks(stride)
         .map(|part| {
             let size = part.len() as f64;
-            let time = part.iter().map(|row| row.time_s).sum::<f64>() / size;
-            (time, part.iter().map(|row| row.observed).sum::<f64>() / size - mean)
+            let time = part.iter().map(|row| row.0).sum::<f64>() / size;
+            (time, part.iter().map(|row| row.1).sum::<f64>() / size - mean)
         })
         .collect();
     let (start, end) = (samples.first()?.0, samples.last()?.0);
@@ -78,39 +93,34 @@ fn spectrum(rows: &[SeriesRow]) -> Option<Vec<(f64, f64)>> {
         (0..=count).map(place).map(|frequency| (frequency, amplitude(frequency))).collect()
     };
     let lowest = 1.0 / duration;
-    let coarse =
-        lines(lowest, nyquist, (2.0 * duration * nyquist).clamp(2.0, 4.0 * MOST_LINES as f64) as usize);
-    let strongest = coarse.iter().max_by(|one, other| one.1.total_cmp(&other.1))?.0;
+    let searched = || {
+        let count = (2.0 * duration * nyquist).clamp(2.0, 4.0 * MOST_LINES as f64) as usize;
+        let coarse = lines(lowest, nyquist, count);
+        Some(coarse.iter().max_by(|one, other| one.1.total_cmp(&other.1))?.0)
+    };
+    let strongest = known_hz.or_else(searched)?;
     let found = lines(lowest, (HARMONICS * strongest).min(nyquist), MOST_LINES);
     (duration > 0.0 && found.iter().all(|(_, amplitude)| amplitude.is_finite())).then_some(found)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::spectrum;
-    use results::SeriesRow;
+    use super::plot;
     use std::f64::consts::TAU;
 
     #[test]
-    fn a_sinusoid_has_its_amplitude_at_its_frequency() {
-        let row = |at: usize| {
-            let time_s = 0.01 * at as f64;
-            let observed = 3.0 + 0.7 * (TAU * 2.0 * time_s).cos();
-            let [nominal, recalibrated, repaired] = [observed; 3];
-            SeriesRow {
-                record: 1,
-                segment: 1,
-                time_s,
-                observed,
-                nominal,
-                recalibrated,
-                repaired,
-                input_torque: None,
-            }
+    fn a_sinusoid_has_its_amplitude_at_its_frequency_and_modes_are_marked() {
+        let sample = |at: usize| {
+            let time = 0.01 * at as f64;
+            (time, 3.0 + 0.7 * (TAU * 2.0 * time).cos())
         };
-        let rows: Vec<SeriesRow> = (0..4000).map(row).collect();
-        let found = spectrum(&rows).unwrap();
-        let top = found.iter().max_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
-        assert!((top.0 - 2.0).abs() < 0.03 && (top.1 - 0.7).abs() < 0.05, "{top:?}");
+        let samples: Vec<(f64, f64)> = (0..4000).map(sample).collect();
+        for modes in [&[][..], &[2.0]] {
+            let drawn = plot(&samples, modes, "angle (rad)").unwrap();
+            let lines = &drawn.series[0].points;
+            let top = lines.iter().max_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
+            assert!((top.0 - 2.0).abs() < 0.03 && (top.1 - 0.7).abs() < 0.05, "{top:?}");
+            assert_eq!(drawn.series[1].points.len(), modes.len());
+        }
     }
 }
