@@ -20,9 +20,8 @@ use std::f64::consts::TAU;
 /// the whole drive, of which the measured torque is only a part; or bend the sensor's readings, from which the drive is
 /// computed too. A constant torque is part of the calibration. Any line of the drive's noise, which is red, would pass for
 /// a forcing or a second body. The weight of links depends on all joints and is the model's; along one joint's angle, with
-/// a spring, it would only imitate a spring that hardens, and an asymmetric spring would imitate wrong weights, whose torque is a
-/// constant, a spring and a square of the angle.
-const NOT_OF_A_JOINT: [&str; 15] = [
+/// a spring, it would only imitate a spring that hardens.
+const NOT_OF_A_JOINT: [&str; 14] = [
     "backlash",
     "stiffness_drift",
     "damping_drift",
@@ -37,7 +36,6 @@ const NOT_OF_A_JOINT: [&str; 15] = [
     "periodic_forcing",
     "flexible_coupling",
     "gravity",
-    "asymmetric_stiffness",
 ];
 
 /// One joint along the measured motion.
