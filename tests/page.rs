@@ -103,15 +103,31 @@ impl Page {
         let ended = "!document.getElementById('answer').hidden || !document.getElementById('refusal').hidden";
         self.browser.wait_until(ended, LATER);
         assert_eq!(self.text("#refusal"), "");
+        serde_json::from_str(&self.saved("diagnosis.json")).unwrap()
+    }
+
+    /// Returns a file of the diagnosis, saved by its button.
+    fn saved(&mut self, name: &str) -> String {
         self.browser.download_to(self.scratch.path());
-        self.browser.evaluate(
-            "[...document.querySelectorAll('#take button')].find((button) => button.textContent === 'diagnosis.json').click()",
-        );
+        self.browser.evaluate(&format!(
+            "[...document.querySelectorAll('#take button')].find((button) => button.textContent === '{name}').click()"
+        ));
         self.browser.wait_for_download();
-        let file = self.scratch.path().join("diagnosis.json");
-        let text = std::fs::read(&file).unwrap();
+        let file = self.scratch.path().join(name);
+        let text = std::fs::read_to_string(&file).unwrap();
         std::fs::remove_file(file).unwrap();
-        serde_json::from_slice(&text).unwrap()
+        text
+    }
+
+    /// Moves the focus by the tabulator until an expression on the focused element is true, and presses Enter there.
+    fn press_at(&mut self, element: &str) {
+        for _ in 0..200 {
+            if self.browser.evaluate(&format!("(({element}) === document.activeElement)")) == true {
+                return self.browser.press("Enter");
+            }
+            self.browser.press("Tab");
+        }
+        panic!("the tabulator does not reach {element}");
     }
 
     /// Checks that the page has said nothing on the console and requested nothing since it was loaded.
@@ -242,6 +258,18 @@ fn driven_records_are_diagnosed_together_as_by_the_program() {
     let mut apart = Vec::new();
     differences(&found, &by_the_program(&records, &nominal), "", &mut apart);
     assert!(apart.is_empty(), "{} numbers differ:\n{}", apart.len(), apart.join("\n"));
+    // The repaired simulator runs as its first lines say.
+    let repaired = scratch.path().join("repaired.toml");
+    let text = page.saved("repaired.toml");
+    std::fs::write(&repaired, &text).unwrap();
+    let input = text.split_once("simulate repaired.toml input.").unwrap().1.lines().next().unwrap();
+    let input: Vec<String> = format!("input.{input}").split(' ').map(str::to_owned).collect();
+    let out = scratch.path().join("again");
+    let mut arguments =
+        vec!["simulate", repaired.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()];
+    arguments.extend(input.iter().map(String::as_str));
+    let output = trainer(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     page.is_quiet();
 }
 
@@ -289,14 +317,74 @@ fn what_is_no_log_is_refused_in_a_sentence_and_the_page_goes_on() {
         (file("<img src=x onerror=alert(1)>.csv", b"time_s,angle_rad\n0,1\n0.1,x\n"), ""),
         (large, "200 MB"),
         (file("arm.urdf", b"<robot name='arm'/>"), "trainer diagnose LOG --nominal arm.urdf"),
+        (file("arm.xml", b"<mujoco/>"), "robot"),
     ] {
         page.drop(&[&path]);
         let told = format!("{} {}", page.text("#status"), page.text("#logs"));
         assert!(told.contains(said) && told.len() > 40, "{}: {told}", path.display());
         assert!(page.browser.evaluate("document.getElementById('simulator').hidden") == true, "{told}");
     }
-    page.drop(&[&root().join("experiments/default-record/record.csv")]);
+    page.drop(&[&root().join("experiments/default-record/record.csv"), &scratch.path().join("arm.urdf")]);
     assert!(page.text("dl.key").contains("3.461333"));
+    assert!(page.text("#status").contains("robot"), "{}", page.text("#status"));
+    page.is_quiet();
+}
+
+/// Regression: a second log of another system was taken for a recording of the same one without a word, and a simulator
+/// that was dropped beside was lost when the logs were read again.
+#[test]
+fn logs_of_two_systems_are_told_apart_and_one_can_be_left_out() {
+    let Some(mut page) = Page::open() else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let other = scratch.path().join("other.csv");
+    let line = |at: u32| {
+        let time = 0.005 * f64::from(at);
+        format!("{time:.3},{:.2}\n", 30.0 * (-0.2 * time).exp() * (50.0 * time).cos())
+    };
+    std::fs::write(&other, format!("time_s,angle_deg\n{}", (0..2000).map(line).collect::<String>())).unwrap();
+    let folder = root().join("experiments/default-record");
+    page.drop(&[&folder.join("record.csv"), &other, &folder.join("nominal.toml")]);
+    let said = page.text("#status");
+    assert!(said.starts_with("Read as recordings of one system: record.csv, other.csv."), "{said}");
+    assert!(page.text("#logs .warning").contains("3.46") && page.text("#logs .warning").contains("7.95"));
+    page.browser
+        .evaluate("[...document.querySelectorAll('#logs button')].find((button) => button.textContent === 'Leave out other.csv').click()");
+    page.browser.wait_until("document.getElementById('status').textContent === 'Read: record.csv.'", SOON);
+    assert_eq!(page.text("#logs .warning"), "");
+    let nominal = page.browser.evaluate("document.getElementById('nominal').value");
+    assert_eq!(nominal.as_str(), std::fs::read_to_string(folder.join("nominal.toml")).ok().as_deref());
+    page.is_quiet();
+}
+
+/// From the log to the repaired simulator without a mouse.
+#[test]
+fn the_way_goes_by_the_keyboard_alone() {
+    let Some(mut page) = Page::open() else { return };
+    page.press_at("document.getElementById('shipped')");
+    page.browser.wait_until("document.getElementById('status').textContent === 'Read: record.csv.'", SOON);
+    page.press_at("document.getElementById('diagnose')");
+    page.browser.wait_until("!document.getElementById('answer').hidden", LATER);
+    page.browser.download_to(page.scratch.path());
+    page.press_at("document.querySelector('#take .button')");
+    page.browser.wait_for_download();
+    assert!(page.scratch.path().join("repaired.toml").is_file());
+    page.is_quiet();
+}
+
+#[test]
+fn a_million_samples_are_read() {
+    let Some(mut page) = Page::open() else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("long.csv");
+    let line = |at: u32| {
+        let time = 1e-4 * f64::from(at);
+        format!("{time:.4},{:.6}\n", 0.5 * (-0.05 * time).exp() * (20.0 * time).cos())
+    };
+    std::fs::write(&file, format!("time_s,angle_rad\n{}", (0..1_000_000).map(line).collect::<String>()))
+        .unwrap();
+    page.drop(&[&file]);
+    page.browser.wait_until("document.getElementById('status').textContent === 'Read: long.csv.'", SOON);
+    assert!(page.text("dl.key").contains("3.1831"), "{}", page.text("dl.key"));
     page.is_quiet();
 }
 

@@ -31,8 +31,9 @@ export const answered = (answer, logs, options) => {
       taken(files, "report.html", "Save the report"),
       make("button", { type: "button", class: "button", onclick: () => save("diagnosis.zip", [zip(files)], "application/zip") }, "Save all (ZIP)")),
     make("details", {}, make("summary", {}, "Files, one by one"), make("ul", { class: "files" }, ...each)),
-    make("p", { class: "note" }, "The same on the command line, with this nominal.toml beside the log:"),
-    make("pre", { tabindex: "0", id: "command" }, command));
+    make("details", {}, make("summary", {}, "The same on the command line"),
+      make("p", { class: "note" }, `With ${nominal.name} of “Files, one by one”, saved as nominal.toml, beside the log:`),
+      make("pre", { tabindex: "0", id: "command" }, command)));
   $("answer").hidden = false;
   show(files.find((file) => file.name === "report.html").text);
 };

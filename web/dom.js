@@ -12,6 +12,15 @@ export const make = (name, attributes = {}, ...children) => {
   return element;
 };
 
+// A table that scrolls in itself where it is too wide; the first cell of a row names it. `of` is what it
+// belongs to.
+export const table = (caption, heads, rows, of) => make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${caption}: ${of}` },
+  make("table", {},
+    make("caption", {}, caption),
+    make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, head)))),
+    make("tbody", {}, ...rows.map(([first, ...others]) =>
+      make("tr", {}, make("th", { scope: "row" }, first), ...others.map((cell) => make("td", {}, cell)))))));
+
 // A plot that the module drew: it consists of numbers and of labels that are escaped there.
 export const picture = (svg) => {
   const parsed = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;

@@ -14,6 +14,8 @@ const LARGEST_MB = 100;
 
 const engine = new Engine();
 let logs = [];
+// The simulator that was dropped beside the logs, and what else is to be said of the drop.
+let simulator, notice = "";
 
 const say = (text) => { $("status").textContent = text; };
 
@@ -24,45 +26,62 @@ const refuse = (text) => {
 
 const hide = (...ids) => ids.forEach((id) => { $(id).hidden = true; });
 
-// Takes dropped files: simulators by their ending, everything else as logs.
+// Takes dropped files: simulators and robots by their endings, everything else as logs.
 const take = async (files) => {
   const given = [...files];
-  const simulator = given.find((file) => /\.toml$/i.test(file.name));
-  const dropped = given.filter((file) => file !== simulator);
-  const robot = dropped.find((file) => /\.urdf$/i.test(file.name));
-  if (robot) {
-    return say(`${robot.name} is a robot of several joints, which the page does not diagnose. The program does: ` +
-      `trainer diagnose LOG --nominal ${robot.name}`);
-  }
+  const nominalFile = given.find((file) => /\.toml$/i.test(file.name));
+  const robot = given.find((file) => /\.(urdf|xacro|mjcf|xml)$/i.test(file.name));
+  const dropped = given.filter((file) => file !== nominalFile && file !== robot);
+  notice = robot ? `${robot.name} is taken for a robot of several joints, which the page does not diagnose. The program does: ` +
+    `trainer diagnose LOG --nominal ${robot.name}` : "";
+  if (robot && !dropped.length) return say(notice);
   const large = dropped.find((file) => file.size > LARGEST_MB * 2 ** 20);
   if (large) {
     hide("log", "simulator", "answer");
     return say(`${large.name} has ${Math.round(large.size / 2 ** 20)} MB; the page reads files of up to ${LARGEST_MB} MB. ` +
       "Cut it or thin it out, or use the program: trainer init FILE.");
   }
-  const text = simulator && await simulator.text();
+  const taken = nominalFile && { name: nominalFile.name, text: await nominalFile.text() };
   if (dropped.length) {
     logs = dropped;
+    simulator = taken;
     engine.files = logs;
     offerOptions([]);
-    await look(text && { name: simulator.name, text });
-  } else if (text && logs.length) {
-    nominal.dropped(simulator.name, text);
+    await look();
+  } else if (taken && logs.length) {
+    simulator = taken;
+    nominal.dropped(taken.name, taken.text);
     hide("answer");
+    say(`${taken.name} is the simulator now.`);
   } else {
     say("Drop a log beside the simulator.");
   }
 };
 
+const leaveOut = (at) => {
+  logs = logs.filter((_, own) => own !== at);
+  engine.files = logs;
+  look().then(() => $("log-title").focus());
+};
+
+// Says what the logs were taken for.
+const told = (found) => {
+  if (found.some((log) => log.error)) return "Not every log could be read: see below.";
+  const names = found.map((log) => log.name).join(", ");
+  if (found.length === 1) return `Read: ${names}.`;
+  const doubt = found.some((log) => log.apart) ? " Not all of them look like it: see below." : "";
+  return `Read as recordings of one system: ${names}.${doubt}`;
+};
+
 // Reads the logs and shows what they were taken for.
-const look = async (simulator) => {
+const look = async () => {
   hide("answer");
   refuse("");
   fill($("estimates"));
   say(logs.length === 1 ? `Reading ${logs[0].name} …` : `Reading ${logs.length} logs …`);
   try {
     const { logs: found } = await engine.ask({ do: "look", reading: options() });
-    logsShown(found);
+    logsShown(found, leaveOut);
     offerOptions(found);
     $("log").hidden = false;
     const readable = found.filter((log) => !log.error);
@@ -72,9 +91,7 @@ const look = async (simulator) => {
     $("simulator").hidden = readable.length < found.length;
     offerNominal(readable, simulator);
     estimate();
-    say(readable.length < found.length
-      ? "Not every log could be read: see below."
-      : `Read: ${found.map((log) => log.name).join(", ")}.`);
+    say(`${told(found)} ${notice}`.trim());
   } catch (error) {
     hide("log", "simulator");
     if (!(error instanceof Cancelled)) say(error.message);

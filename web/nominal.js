@@ -7,22 +7,26 @@ export const nominal = {
   name: "nominal.toml",
   get text() { return box().value; },
   dropped(name, text) {
+    file = { name, text };
     this.name = name;
     box().value = text;
-    kinds("file", name);
+    kinds("file");
   },
 };
 
-let guess = "";
+// The guess with the log that it is from, and the dropped simulator.
+let guess = "", source, file;
 
 // Offers the guess of the surest log, or the simulator that was dropped beside.
 export const offerNominal = (logs, simulator) => {
   const surest = logs.toSorted((one, other) => one.uncertainty - other.uncertainty)[0];
   guess = surest?.nominal ?? "";
+  source = logs.length > 1 ? surest.name : "the log";
+  file = undefined;
   if (simulator) return nominal.dropped(simulator.name, simulator.text);
   nominal.name = "nominal.toml";
   box().value = guess;
-  kinds("guess", surest?.name);
+  kinds("guess");
 };
 
 const FORMS = {
@@ -37,20 +41,21 @@ const FORMS = {
   },
 };
 
-const kinds = (kind, name) => {
+const kinds = (kind) => {
   const kindOf = (value, text) => make("label", { class: "choice" },
-    make("input", { type: "radio", name: "nominal-kind", value, checked: value === kind, onchange: () => choose(value, name) }), ` ${text}`);
+    make("input", { type: "radio", name: "nominal-kind", value, checked: value === kind, onchange: () => choose(value) }), ` ${text}`);
   fill($("nominal-kinds"),
     make("legend", { class: "unseen" }, "Source of the simulator"),
-    kindOf("guess", "guessed from the log"),
+    kindOf("guess", `guessed from ${source}`),
     ...Object.entries(FORMS).map(([value, form]) => kindOf(value, form.title)),
-    kind === "file" ? kindOf("file", `the file ${name}`) : null);
+    file ? kindOf("file", `the file ${file.name}`) : null);
   fill($("nominal-form"));
 };
 
 const choose = (kind) => {
-  nominal.name = "nominal.toml";
+  nominal.name = kind === "file" ? file.name : "nominal.toml";
   if (kind === "guess") box().value = guess;
+  if (kind === "file") box().value = file.text;
   const form = FORMS[kind];
   if (!form) return fill($("nominal-form"));
   const known = (key) => guess.match(new RegExp(`^${key} = ([-+.\\deE]+)`, "m"))?.[1];

@@ -21,7 +21,7 @@ const control = (field, titles, value) => {
     input = make("input", { ...attributes, type: "text", value: value ?? "", list: field.column ? "titles" : null, autocomplete: "off" });
   }
   return make("div", { class: "field" },
-    make("label", { for: id }, `--${field.option}`), input,
+    make("label", { for: id }, field.option.replaceAll("-", " ")), input,
     make("p", { id: `${id}-meaning`, class: "note" }, field.meaning));
 };
 

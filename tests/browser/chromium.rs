@@ -204,13 +204,13 @@ impl Chromium {
         );
     }
 
-    /// Presses and releases a key.
+    /// Presses and releases `Enter` or `Tab`.
     pub(crate) fn press(&mut self, key: &str) {
-        let text = if key == "Enter" { "\r" } else { key };
+        let (text, code) = if key == "Enter" { ("\r", 13) } else { ("", 9) };
         self.call(
             "Input.dispatchKeyEvent",
             json!({ "type": "keyDown", "key": key, "code": key, "text": text,
-            "windowsVirtualKeyCode": 13 }),
+            "windowsVirtualKeyCode": code }),
         );
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key, "code": key }));
     }

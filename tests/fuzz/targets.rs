@@ -129,5 +129,6 @@ pub(crate) fn results(data: &[u8]) {
         predictions: &predictions,
         series: &series,
         environment: &environment,
+        reader: report::Reader::Page,
     });
 }

@@ -3,6 +3,7 @@
 use crate::Repaired;
 use dynamics::chain::Observed;
 use dynamics::{Coordinate, Quantity};
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Writes a configuration that `trainer simulate` can run: the oscillator's coefficients in SI units or per
@@ -38,9 +39,14 @@ pub fn configuration(repaired: &Repaired) -> String {
     number(&mut text, "position", repaired.start.position, repaired.unit(Quantity::Position));
     number(&mut text, "velocity", repaired.start.velocity, repaired.unit(Quantity::Velocity));
     if repaired.driven() {
-        text.push_str(
-            "\n# The system was driven by a measured input, which a configuration cannot hold: choose a waveform.\n\
-             [input]\nwaveform = \"none\"\n",
+        let frequency_hz = nominal.angular_frequency() / TAU;
+        let _ = write!(
+            text,
+            "\n# The system was driven by a measured input, which this file cannot hold; repaired.py takes it. For another input:\n\
+             #   trainer simulate repaired.toml input.waveform=sine input.amplitude=1 input.frequency_hz={:.3}\n\
+             [input]\n{:<48}# or sine, chirp, square\n",
+            if frequency_hz > 0.0 { frequency_hz } else { 1.0 },
+            "waveform = \"none\"",
         );
     }
     let observed = match repaired.observed {

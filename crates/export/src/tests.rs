@@ -57,7 +57,11 @@ fn a_drive_without_a_spring_has_no_spring_in_its_equation() {
     let text = equation_text(&drive);
     assert!(text.starts_with("I θ″ + c θ′ = the term below\n  input: g u(t)\n"), "{text}");
     assert!(text.contains("I = 9.500000e1 kg\n") && text.contains("θ is the displacement"), "{text}");
-    assert!(configuration(&drive).contains("coordinate = \"displacement\""));
+    let file = configuration(&drive);
+    assert!(file.contains("coordinate = \"displacement\""));
+    assert!(file.contains(
+        "trainer simulate repaired.toml input.waveform=sine input.amplitude=1 input.frequency_hz=1.000\n"
+    ));
     assert!(python(&drive).contains("drive = input_gain * u(time)"));
 }
 

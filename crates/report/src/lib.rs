@@ -27,11 +27,13 @@ pub mod glossary;
 mod joints;
 mod latex;
 mod learning;
+mod log_unit;
 mod modes;
 mod page;
 mod parse;
 pub mod plot;
 mod prediction;
+mod reader;
 mod remarks;
 mod rigs;
 mod run_table;
@@ -51,8 +53,10 @@ pub use classes::{
     unlikely_classes, verdict_sentence,
 };
 pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
+pub use diagnosis::spectrum_plot;
 pub use error::ReportError;
 pub use modes::{half_power_width, quality_factor, sentence as modes_sentence};
+pub use reader::{Reader, in_fields};
 pub use remarks::{
     bar_state, is_believed, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings,
 };
@@ -121,7 +125,16 @@ pub fn render_prediction(texts: &RunTexts<'_>) -> Result<String, ReportError> {
 ///
 /// As [`render`], and if the run has a different task.
 pub fn render_diagnosis(texts: &RunTexts<'_>) -> Result<String, ReportError> {
-    diagnosis::render(texts, &parse::parse_diagnosis(texts)?)
+    diagnosis::render(texts, parse::parse_diagnosis(texts)?)
+}
+
+/// Converts errors, positions and their units in a diagnosis into the unit of its logs, if they share one, as its report
+/// shows them. Coefficients stay in SI units.
+#[must_use]
+pub fn in_log_unit(result: &results::DiagnosisResult) -> results::DiagnosisResult {
+    let mut shown = result.clone();
+    log_unit::LogUnit::of(result).into_iter().for_each(|unit| unit.convert(&mut shown));
+    shown
 }
 
 /// Renders the report on withheld-effect trials, `task = "trials"`.

@@ -11,7 +11,7 @@ use crate::remarks::is_believed;
 use crate::tables::{self, ComparisonRow, Fact, SeedView};
 use crate::verdict;
 use crate::whole;
-use crate::{ReportError, RunTexts};
+use crate::{Reader, ReportError, RunTexts};
 use results::DataSummary;
 
 #[derive(Template)]
@@ -67,7 +67,13 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
 /// Returns the plot of the record if only a part of it was read.
 fn part(data: &DataSummary) -> Option<Figure> {
     let axis = Axis::linear(format!("recorded ({})", data.unit));
-    whole::figure("whole".to_owned(), "The part that was read".to_owned(), axis, &data.reading)
+    whole::figure(
+        "whole".to_owned(),
+        "The part that was read".to_owned(),
+        axis,
+        &data.reading,
+        Reader::CommandLine,
+    )
 }
 
 #[cfg(test)]

@@ -33,10 +33,12 @@ pub fn noticed(data: &DataSummary) -> Vec<String> {
 }
 
 /// Returns `true` if everything that a diagnosis names lies in the measurement chain, and nothing in the
-/// equation of motion: `none` is then more probable than not beside the effects.
+/// equation of motion: `none`, or `calibration`, is then more probable than not beside the effects.
 #[must_use]
 pub fn is_of_the_chain_only(result: &DiagnosisResult) -> bool {
-    result.verdict.status == VerdictStatus::Effect && result.probability(VerdictStatus::None) > 0.5
+    let [none, calibration] = [VerdictStatus::None, VerdictStatus::Calibration];
+    result.verdict.status == VerdictStatus::Effect
+        && result.probability(none) + result.probability(calibration) > 0.5
 }
 
 /// Returns rows on the truth of a simulated record and the distance of the answer from it: a name and a

@@ -60,6 +60,7 @@ impl Sample {
             predictions: "",
             series: "",
             environment: &self.environment,
+            reader: crate::Reader::CommandLine,
         })
     }
 }

@@ -1,5 +1,7 @@
 //! Texts of a run from which a page is made.
 
+use crate::Reader;
+
 /// The texts of the files in a run folder.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RunTexts<'a> {
@@ -23,4 +25,6 @@ pub struct RunTexts<'a> {
     pub series: &'a str,
     /// `environment.json`: the program and the machine of the run. Shown unchanged; may be empty.
     pub environment: &'a str,
+    /// Reader of the report; only that on a diagnosis differs.
+    pub reader: Reader,
 }

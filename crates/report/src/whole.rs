@@ -2,6 +2,7 @@
 
 use results::Reading;
 
+use crate::Reader;
 use crate::figures::{Figure, csv, number};
 use crate::format::{quantity, significant};
 use crate::plot::{Axis, Hue, Mark, Plot, Series};
@@ -9,7 +10,13 @@ use crate::plot::{Axis, Hue, Mark, Plot, Series};
 /// Returns the plot of a whole record with the part that was read shaded; `None` if all of it was read.
 ///
 /// `title` names the record, and `axis` its values.
-pub(crate) fn figure(id: String, title: String, axis: Axis, reading: &Reading) -> Option<Figure> {
+pub(crate) fn figure(
+    id: String,
+    title: String,
+    axis: Axis,
+    reading: &Reading,
+    reader: Reader,
+) -> Option<Figure> {
     let (whole, [from, to]) = (reading.whole.as_ref()?, reading.part_s?);
     let plot = Plot {
         x: Axis::linear("time (s)"),
@@ -32,9 +39,13 @@ pub(crate) fn figure(id: String, title: String, axis: Axis, reading: &Reading) -
     } else {
         format!(" It also swings freely from {}.", others.join(" and from "))
     };
+    let keys = match reader {
+        Reader::CommandLine => "--from and --to, or data.from_s and data.to_s",
+        Reader::Page => "“from” and “to”",
+    };
     let explanation = format!(
         "The file's own time. Shaded: the part from {} to {}, which was read, {why}.{also} Another part is taken with \
-         --from and --to, or data.from_s and data.to_s.",
+         {keys}.",
         time(from),
         time(to)
     );

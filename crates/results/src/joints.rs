@@ -70,6 +70,9 @@ pub struct JointRepairRow {
     pub stiffness: Option<WithInterval>,
     /// Constant torque, such as the offset of the torque sensor, in N m or N.
     pub torque_offset: Option<WithInterval>,
+    /// Gain of the torque sensor: the torque is so many times what it reads; `null` where the recordings do not tell it
+    /// from 1.
+    pub torque_gain: Option<WithInterval>,
 }
 
 /// Error of the whole model at one joint: root mean squares of the differences of positions.

@@ -44,16 +44,18 @@ fn torques<'a>(
     recording: &'a Recording,
     joints: &[JointInfo],
     holds: &[Hold],
+    gains: &[f64],
 ) -> Result<Vec<Torques<'a>>, RobotError> {
     let mut torques = Vec::new();
-    for ((channel, joint), hold) in recording.joints.iter().zip(joints).zip(holds) {
-        let own = channel.linear_torques(*hold).ok_or_else(|| RobotError::NoColumn {
+    for (((channel, joint), hold), gain) in recording.joints.iter().zip(joints).zip(holds).zip(gains) {
+        let mut own = channel.linear_torques(*hold).ok_or_else(|| RobotError::NoColumn {
             log: recording.name.clone(),
             quantity: "torque",
             joint: joint.name.clone(),
             columns: "positions only".to_owned(),
             option: format!("{}=POSITION,TORQUE", joint.name),
         })?;
+        own.iter_mut().for_each(|torque| *torque *= gain);
         torques.push((channel.times.as_slice(), own));
     }
     Ok(torques)
@@ -66,6 +68,8 @@ pub struct Variant<'a> {
     pub acting: &'a [Acting],
     /// Behavior of the drive's torque between samples, by joint.
     pub holds: &'a [Hold],
+    /// Torque of each drive over what its sensor reads, by joint.
+    pub gains: &'a [f64],
 }
 
 /// Runs a model with what acts in its joints over a recording, in runs of `span` seconds from the measured state, and
@@ -75,12 +79,12 @@ pub struct Variant<'a> {
 /// [`RobotError::NoColumn`] if a torque was not recorded; [`RobotError::Model`] and [`RobotError::Motion`] from the model.
 pub fn closed_loop(
     model: &dyn Model,
-    Variant { acting, holds }: Variant<'_>,
+    Variant { acting, holds, gains }: Variant<'_>,
     along: &Along,
     (span, part): (f64, Range<f64>),
 ) -> Result<ClosedLoop, RobotError> {
     let recording = along.recording();
-    let torques = torques(recording, model.joints(), holds)?;
+    let torques = torques(recording, model.joints(), holds, gains)?;
     let Some(first) = recording.joints.first() else {
         return Ok(ClosedLoop { joints: None, runs: 0, starts: Vec::new() });
     };

@@ -28,6 +28,7 @@ mod urdf;
 pub use agreement::{JointCoefficient, coefficients};
 pub use along::Along;
 pub use closed_loop::{ClosedLoop, JointError, Variant, closed_loop};
+pub use drive_noise::Gain;
 pub use error::RobotError;
 pub use foreign::{Foreign, Simulator};
 pub use model::{Evaluated, JointInfo, Model, RepairedModel};

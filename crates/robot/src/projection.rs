@@ -25,7 +25,7 @@
 //! Luenberger, IEEE Transactions on Military Electronics 8 (1964) 74.
 
 use crate::along::Along;
-use crate::drive_noise::{Drive, Sample, drive_noise};
+use crate::drive_noise::{Drive, Gain, Sample, drive_noise};
 use crate::error::RobotError;
 use crate::model::JointInfo;
 use crate::tracking::Tracking;
@@ -73,6 +73,8 @@ pub struct Projected {
     pub scale: Scale,
     /// Behavior of the torque between samples that leaves less unexplained.
     pub hold: Hold,
+    /// Gain of the torque sensor, by which the recorded torques were multiplied; `None` if it is not told from 1.
+    pub gain: Option<Gain>,
     /// One part for each recording.
     pub parts: Vec<Part>,
 }
@@ -92,10 +94,10 @@ struct Torques {
 }
 
 impl Torques {
-    /// Returns the known torques without the inertia of the joint itself.
-    fn known(&self, hold: Hold) -> f64 {
+    /// Returns the torque of the drive.
+    fn drive(&self, hold: Hold) -> f64 {
         let [held, linear] = self.drives;
-        (if hold == Hold::Zero { held } else { linear }) - self.model
+        if hold == Hold::Zero { held } else { linear }
     }
 }
 
@@ -195,7 +197,8 @@ impl Gathered {
             position: own.position,
             velocity: own.velocity,
             acceleration: own.acceleration,
-            unexplained: own.inertia * own.acceleration - own.known(hold),
+            unexplained: own.inertia * own.acceleration + own.model - own.drive(hold),
+            torque: own.drive(hold),
         };
         self.samples.iter().map(|own| own.iter().map(sample).collect()).collect()
     }
@@ -203,8 +206,10 @@ impl Gathered {
     /// Returns the behavior of the torque between samples that leaves less, the samples under it, and what is left.
     pub(crate) fn best(&self) -> (Hold, Vec<Vec<Sample>>, Drive) {
         let [held, linear] = HOLDS.map(|hold| {
-            let samples = self.unexplained(hold);
+            let mut samples = self.unexplained(hold);
             let drive = drive_noise(&self.tracking, &samples, self.turns);
+            let excess = drive.gain.map_or(0.0, |gain| gain.value - 1.0);
+            samples.iter_mut().flatten().for_each(|own| own.unexplained -= excess * own.torque);
             (hold, samples, drive)
         });
         if held.2.density < linear.2.density { held } else { linear }
@@ -230,10 +235,11 @@ pub fn project(
     share: f64,
 ) -> Result<Projected, RobotError> {
     let gathered = Gathered::of(joints, recordings, joint, share)?;
-    let (hold, _, Drive { density, offsets, friction_alone }) = gathered.best();
+    let (hold, _, Drive { density, offsets, friction_alone, gain }) = gathered.best();
     let tracking = gathered.tracking;
+    let times = gain.map_or(1.0, |gain| gain.value);
     let drive = |own: &Torques| {
-        own.known(hold) - (own.inertia - tracking.inertia) * own.acceleration
+        times * own.drive(hold) - own.model - (own.inertia - tracking.inertia) * own.acceleration
             + tracking.damping * own.velocity
             + tracking.stiffness * own.position
     };
@@ -245,5 +251,5 @@ pub fn project(
     let parts = gathered.samples.iter().zip(&gathered.from).zip(offsets).map(|((samples, from), offset)| {
         Part { from: *from, drive: samples.iter().map(|own| drive(own) + offset).collect(), offset }
     });
-    Ok(Projected { joint, tracking, drive_noise: density, scale, hold, parts: parts.collect() })
+    Ok(Projected { joint, tracking, drive_noise: density, scale, hold, gain, parts: parts.collect() })
 }

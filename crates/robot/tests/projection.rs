@@ -93,7 +93,7 @@ fn the_whole_model_follows_a_held_torque() {
     let along = Along::of(&arm, recorded(arm.tree(), Hold::Zero)).unwrap();
     let damped = vec![Acting { damping: 0.2, ..Acting::default() }; 2];
     let error = |hold: Hold| {
-        let variant = Variant { acting: &damped, holds: &[hold; 2] };
+        let variant = Variant { acting: &damped, holds: &[hold; 2], gains: &[1.0; 2] };
         let found = closed_loop(&arm, variant, &along, (3.0, 0.0..1.0)).unwrap();
         found.joints.unwrap()[1].rms().unwrap()
     };

@@ -3,7 +3,7 @@
 use crate::host::{Answered, Host};
 use crate::reading::reading;
 use diagnosis::{Settings, Stage};
-use report::RunTexts;
+use report::{Reader, RunTexts};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use workflow::{Log, Question, after, nominal};
@@ -52,6 +52,7 @@ pub(crate) fn diagnose(logs: &[Log], request: &DiagnoseRequest, host: &dyn Host)
         result: text("diagnosis.json"),
         series: text("series.csv"),
         environment: &environment,
+        reader: Reader::Page,
         ..RunTexts::default()
     };
     let page = report::render_diagnosis(&texts).map_err(|error| error.to_string())?;

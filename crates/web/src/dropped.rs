@@ -54,6 +54,6 @@ impl Dropped {
             Ok(Request::Diagnose(request)) => diagnose(&self.logs, &request, host),
             Err(error) => Err(format!("the page asked for something unknown: {error}")),
         };
-        answer.unwrap_or_else(|error| json!({ "error": error })).to_string()
+        answer.unwrap_or_else(|error| json!({ "error": report::in_fields(&error) })).to_string()
     }
 }

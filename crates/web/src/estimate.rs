@@ -2,14 +2,21 @@
 
 use crate::host::Answered;
 use crate::reading::{experiment, reading};
+use estimator::{Cancel, Entry, FitContext, Silent};
 use oracle::classical::{CLASSICAL, ClassicalRoute};
 use results::{PipelineOutcome, PipelineRow};
 use seed::Seed;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
+use settings::{Document, Resolved, Section};
 use workflow::estimate::Input;
+use workflow::look::of_decay;
 use workflow::read::Loaded;
 use workflow::{Log, in_options};
+
+/// Methods of the registry that need neither a network nor random draws.
+const IDENTIFYING: [Entry; 3] =
+    [estimator_sindy::ENTRY, estimator_weak_sindy::ENTRY, estimator_envelope_matching::ENTRY];
 
 /// Request for estimates.
 #[derive(Deserialize)]
@@ -30,11 +37,18 @@ pub(crate) fn estimated(logs: &[Log], request: &EstimateRequest) -> Answered {
         Ok(json!({
             "name": log.name,
             "pipelines": input.pipelines.iter().map(pipeline).collect::<Vec<_>>(),
-            "methods": CLASSICAL.iter().map(|route| method(route, &input)).collect::<Vec<_>>(),
+            "methods": CLASSICAL
+                .iter()
+                .map(|route| method(route, &input))
+                .chain(IDENTIFYING.iter().map(|entry| identified(entry, &input)))
+                .collect::<Vec<_>>(),
             "because": input.extraction.because,
+            "remarks": of_decay(&input.record, &input.clock, input.modes.len(), Some(&input.extraction.envelope)),
         }))
     };
-    let told = |log: &Log| of(log).unwrap_or_else(|error| json!({ "name": log.name, "error": error }));
+    let told = |log: &Log| {
+        of(log).unwrap_or_else(|error| json!({ "name": log.name, "error": report::in_fields(&error) }))
+    };
     Ok(json!({ "logs": logs.iter().map(told).collect::<Vec<_>>() }))
 }
 
@@ -58,5 +72,24 @@ fn method(route: &ClassicalRoute, input: &Input) -> Value {
             "id": route.id, "title": route.title, "decay_rate": fit.decay_rate, "zeta": envelope.damping_ratio(fit.decay_rate),
         }),
         Err(error) => json!({ "id": route.id, "title": route.title, "error": error.to_string() }),
+    }
+}
+
+fn identified(entry: &Entry, input: &Input) -> Value {
+    let envelope = &input.extraction.envelope;
+    let cancel = Cancel::default();
+    let fit = || {
+        let section = [Section { name: "estimator", fields: entry.fields }];
+        let defaults = Resolved::new(&Document::default(), &section).map_err(|error| error.to_string())?;
+        let estimator = (entry.build)(&defaults).map_err(|error| error.to_string())?;
+        let context = FitContext::new(Seed::new(0).child(entry.id), None, &Silent, &cancel);
+        estimator.fit(envelope, &context).map_err(|error| error.to_string())
+    };
+    match fit() {
+        Ok(fit) => json!({
+            "id": entry.id, "title": entry.title, "decay_rate": fit.decay_rate,
+            "zeta": envelope.damping_ratio(fit.decay_rate), "equation": fit.equation,
+        }),
+        Err(error) => json!({ "id": entry.id, "title": entry.title, "error": error }),
     }
 }

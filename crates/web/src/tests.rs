@@ -38,7 +38,7 @@ fn the_policy_of_the_page_admits_the_scripts_of_reports_and_no_others() {
 
 #[test]
 fn the_plots_follow_the_color_scheme() {
-    for hue in [Hue::Ink, Hue::Axis, Hue::Grid, Hue::Shade, Hue::Data, Hue::Second] {
+    for hue in [Hue::Ink, Hue::Axis, Hue::Grid, Hue::Shade, Hue::Data, Hue::Second, Hue::Oracle] {
         let (light, dark) = (hue.light(), hue.dark());
         let rules = [
             format!("svg [fill=\"{light}\"], svg[fill=\"{light}\"] {{ fill: light-dark({light}, {dark}); }}"),
@@ -85,8 +85,13 @@ fn a_log_is_read_by_the_options_of_the_form() {
     let refused = ask(&mut dropped, &json!({ "do": "look", "reading": { "unit": "furlong" } }));
     assert!(refused["error"].as_str().unwrap().contains("furlong"), "{refused}");
     let estimated = ask(&mut dropped, &json!({ "do": "estimate", "reading": reading }));
-    let ratio = estimated.pointer("/logs/0/methods/0/zeta").and_then(Value::as_f64).unwrap();
-    assert!((ratio - 0.01).abs() < 1e-3, "{estimated}");
+    let methods = estimated.pointer("/logs/0/methods").and_then(Value::as_array).unwrap();
+    for id in ["ols", "sindy", "weak-sindy", "envelope-matching"] {
+        let method = methods.iter().find(|method| method["id"] == id).unwrap();
+        assert!((method["zeta"].as_f64().unwrap() - 0.01).abs() < 1e-3, "{method}");
+    }
+    // The plot has the log's unit.
+    assert!(found["logs"][0]["pictures"][0]["wide"].as_str().unwrap().contains("angle (deg)"));
 }
 
 #[test]
@@ -109,4 +114,35 @@ fn a_diagnosis_tells_its_stages_and_has_the_program_s_files() {
     }
     assert_eq!(host.stages.borrow().first().map(String::as_str), Some("measuring the record"));
     assert!(host.stages.borrow().len() >= 5, "{:?}", host.stages);
+}
+
+#[test]
+fn logs_of_two_systems_are_told_apart_and_those_of_one_are_not() {
+    let log = |frequency: f64| -> String {
+        let line = |at: usize| {
+            let time = 0.01 * at as f64;
+            format!(
+                "{time:.2},{}\n",
+                0.3 * (-0.1 * time).exp() * (std::f64::consts::TAU * frequency * time).cos()
+            )
+        };
+        format!("time_s,angle_rad\n{}", (0..2000).map(line).collect::<String>())
+    };
+    let mut dropped = Dropped::default();
+    for (name, frequency) in [("a.csv", 2.0), ("b.csv", 2.1), ("c.csv", 5.0)] {
+        dropped.add(name.to_owned(), log(frequency).into_bytes());
+    }
+    let found = ask(&mut dropped, &json!({ "do": "look", "reading": {} }));
+    let apart = |at: usize| found["logs"][at]["apart"].as_str().unwrap_or_default();
+    let told: Vec<bool> = (0..3).map(|at| apart(at).contains(" Hz: do they come from one system?")).collect();
+    assert!(told == [false, false, true] || told == [true, true, false], "{found}");
+}
+
+#[test]
+fn messages_name_the_fields_of_the_page() {
+    let mut dropped = Dropped::default();
+    dropped.add("log.csv".to_owned(), b"time_s,angle_rad\n0,1\n0.1,x\n0.2,3\n".to_vec());
+    let found = ask(&mut dropped, &json!({ "do": "look", "reading": {} }));
+    let error = found["logs"][0]["error"].as_str().unwrap();
+    assert!(!error.contains(" --"), "{error}");
 }

@@ -29,13 +29,14 @@ fn inertia(oscillator: &LinearOscillator, reading: &record::Reading) -> Option<(
 pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, reading: &record::Reading) -> String {
     let coordinate = coordinate_of(reading.coordinate);
     let known = inertia(oscillator, reading);
+    let signal = reading.value.unit.as_deref().and_then(Unit::parse).filter(|unit| unit.is_signal());
     let (position, mass, torque, damping) = match coordinate {
         Coordinate::Angle => ("rad", "kg m^2", "torque", "N m s/rad"),
-        Coordinate::Displacement => ("m", "kg", "force", "N s/m"),
+        Coordinate::Displacement => (signal.map_or("m", Unit::si), "kg", "force", "N s/m"),
     };
     let mut text = format!(
-        "# The linear oscillator nearest to {log}, as `trainer init` found it. Where you have a simulator, put its numbers\n\
-         # in place of these: a diagnosis says what the simulator in this file lacks.\n\n"
+        "# The linear oscillator nearest to {log}. Where you have a simulator, put its numbers in place of these: a\n\
+         # diagnosis says what the simulator in this file lacks.\n\n"
     );
     let mut line = |key: &str, value: String, comment: String| {
         let _ = writeln!(text, "{:<44}# {comment}", format!("{key} = {value}"));

@@ -148,15 +148,27 @@ pub fn title(id: &str) -> String {
     .to_owned()
 }
 
+/// Returns the title of an effect's row. Beside named effects, the rows of the other statuses are about what the named
+/// ones leave.
+fn row_title(effect: &diagnosis::EffectProbability, verdict: Status) -> String {
+    match (Status::of_row(effect.id), effect.gap_share, verdict) {
+        (Some(Status::Unknown), Some(_), _) => {
+            "something that no known effect explains: a position-dependent torque"
+        }
+        (Some(Status::Unknown), None, Status::Effect) => {
+            "beside the named effects, something that no known effect explains"
+        }
+        (Some(Status::None), _, Status::Effect) => "nothing is missing in the motion",
+        (Some(Status::Calibration), _, Status::Effect) => "in the motion, only the coefficients were off",
+        _ => return title(effect.id),
+    }
+    .to_owned()
+}
+
 fn effects(found: &Diagnosis) -> Vec<EffectRow> {
     let row = |effect: &diagnosis::EffectProbability| EffectRow {
         id: effect.id.to_owned(),
-        title: match (Status::of_row(effect.id), effect.gap_share) {
-            (Some(Status::Unknown), Some(_)) => {
-                "something that no known effect explains: a position-dependent torque".to_owned()
-            }
-            _ => title(effect.id),
-        },
+        title: row_title(effect, found.verdict.status),
         probability: effect.probability,
         parameters: effect
             .parameters

@@ -57,11 +57,16 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
 }
 
 /// Returns the probability that something is left beside a set. It is 1 if the set's error, or its held-out
-/// error `held_out`, exceeds the white noise, whatever its spectrum.
+/// error `held_out`, exceeds the white noise, whatever its spectrum. The noise of a drive was measured beside every law, so
+/// that what lies within it is weighed as noise already, whatever lines it has.
 fn left_over(data: &Data, set: &Fit, held_out: f64) -> Result<f64, DynamicsError> {
     let noise = data.facts.with_drive(floor::floor(data, &set.residuals).interval_95[1]);
     let is_white = (set.squares / set.freedom()).sqrt() <= WHITE * noise && held_out <= PREDICTED * noise;
-    Ok(if is_white { acts(unexplained(data, set)?.evidence) } else { 1.0 })
+    Ok(match is_white {
+        true if data.facts.drive_noise > 0.0 => 0.0,
+        true => acts(unexplained(data, set)?.evidence),
+        false => 1.0,
+    })
 }
 
 /// Returns `true` if an effect counts as one of a class.

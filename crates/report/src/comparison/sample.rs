@@ -192,6 +192,7 @@ impl Folder {
             predictions: "",
             series: "",
             environment: &self.run.environment,
+            reader: crate::Reader::CommandLine,
         })
     }
 }

@@ -150,6 +150,7 @@ fn the_task_chooses_the_page() {
         predictions: "",
         series: "",
         environment: "",
+        reader: crate::Reader::CommandLine,
     };
     assert_eq!(render(&texts).unwrap(), render_comparison(&texts).unwrap());
     assert!(render_run(&texts).unwrap_err().to_string().contains("reads \"estimate\""));

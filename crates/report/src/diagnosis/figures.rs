@@ -2,6 +2,7 @@
 
 use crate::figures::Figure;
 use crate::plot::{Axis, Drawing, Hue, Mark, Series};
+use record::Unit;
 use results::DiagnosisResult;
 
 /// Returns a drawing with its title, explanation and data.
@@ -46,9 +47,10 @@ pub(super) fn recorded(mark: Mark, points: Vec<(f64, f64)>) -> Series {
 
 /// Returns the axis of the observed quantity.
 pub(super) fn observed_axis(result: &DiagnosisResult) -> Axis {
-    let what = match (result.quantity.as_str(), result.gap.unit.as_str()) {
-        ("position", "rad") => "angle",
-        ("position", "m") => "displacement",
+    let what = match (result.quantity.as_str(), Unit::parse(&result.gap.unit)) {
+        ("position", Some(unit)) if unit.is_signal() => "signal",
+        ("position", Some(unit)) if unit.si() == "rad" => "angle",
+        ("position", Some(_)) => "displacement",
         (other, _) => other,
     };
     Axis::linear(format!("{what} ({})", result.gap.unit))

@@ -11,20 +11,25 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+pub(crate) use tests::small;
+
 use askama::Template;
 use results::{DiagnosisResult, VerdictStatus};
 
 use crate::classes::{effect_title, is_calibrated_already, listed, unlikely_classes};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
+use crate::log_unit::LogUnit;
 use crate::modes::{ModeView, mode_views};
 use crate::parse::Diagnosis;
 use crate::remarks::is_of_the_chain_only;
 use crate::tables::Fact;
 use crate::verdict::{self, Origin, Tone, Verdict};
-use crate::{ReportError, RunTexts, actuator_sentence, format};
+use crate::{Reader, ReportError, RunTexts, actuator_sentence, format, in_fields};
 use budget::Share;
 use classes::{Group, Nameless};
+pub use spectrum::plot as spectrum_plot;
 use tables::{CoefficientView, EffectView, GapView, RecordView};
 
 #[derive(Template)]
@@ -58,16 +63,26 @@ struct DiagnosisPage<'a> {
     equation: &'a str,
     latex: &'a str,
     stages: String,
+    /// `true` in the page, which has no folder beside it.
+    is_on_page: bool,
 }
 
-pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<String, ReportError> {
+pub(crate) fn render(texts: &RunTexts<'_>, mut diagnosis: Diagnosis) -> Result<String, ReportError> {
+    let unit = LogUnit::of(&diagnosis.result);
+    if let Some(unit) = &unit {
+        unit.convert(&mut diagnosis.result);
+        unit.convert_series(&mut diagnosis.series);
+    }
+    if texts.reader == Reader::Page {
+        name_fields(&mut diagnosis.result);
+    }
     let result = &diagnosis.result;
     let gap = tables::gap(result);
-    let (lead, record_figures) = record::figures(result, &diagnosis.series);
+    let (lead, record_figures) = record::figures(result, &diagnosis.series, texts.reader);
     let page = DiagnosisPage {
         frame: Frame {
             warnings: warnings(result),
-            next: next(result),
+            next: next(result, texts.reader),
             files: [
                 ("Repaired simulator (repaired.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
@@ -77,7 +92,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
                 texts,
                 "where a simulator and records differ, and what closes the gap",
                 headline(result),
-                origin(result),
+                origin(result, texts.reader),
             )
         },
         groups: classes::groups(result),
@@ -86,7 +101,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         exact_set: tables::exact_set(result),
         has_bars: gap.iter().any(|row| row.bar.is_some()),
         gap,
-        gap_notes: tables::gap_notes(result),
+        gap_notes: tables::gap_notes(result).into_iter().chain(unit.map(|unit| unit.note())).collect(),
+        is_on_page: texts.reader == Reader::Page,
         shares: budget::shares(&result.place.budget),
         effects: tables::effects(result),
         apart: tables::apart(result),
@@ -109,6 +125,14 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
     finish(&page)
 }
 
+/// Writes options in the sentences of a result as fields of the page.
+fn name_fields(result: &mut DiagnosisResult) {
+    let findings = result.records.iter_mut().flat_map(|record| &mut record.findings);
+    for sentence in findings.chain([&mut result.verdict.summary]) {
+        *sentence = in_fields(sentence);
+    }
+}
+
 fn headline(result: &DiagnosisResult) -> Verdict {
     // Beyond √2 noise floors, more than half of the remaining squared error is not noise.
     let [ratio, _] = result.gap.ratio_to_floor_interval_95;
@@ -126,8 +150,15 @@ fn headline(result: &DiagnosisResult) -> Verdict {
     Verdict { tone, label, sentence: result.verdict.summary.clone() }
 }
 
-fn origin(result: &DiagnosisResult) -> Origin {
-    verdict::origin_of_all(result.records.iter().map(|record| record.origin), None)
+fn origin(result: &DiagnosisResult, reader: Reader) -> Origin {
+    let origin = verdict::origin_of_all(result.records.iter().map(|record| record.origin), None);
+    match (origin.class, reader) {
+        ("unstated", Reader::Page) => Origin {
+            note: "If it was measured, choose so under “origin” and read the log again.",
+            ..origin
+        },
+        _ => origin,
+    }
 }
 
 fn warnings(result: &DiagnosisResult) -> Vec<String> {
@@ -155,17 +186,23 @@ fn warnings(result: &DiagnosisResult) -> Vec<String> {
 }
 
 /// Returns the next experiment, and possible uses of the present answer.
-fn next(result: &DiagnosisResult) -> Vec<String> {
+fn next(result: &DiagnosisResult, reader: Reader) -> Vec<String> {
     let mut steps = Vec::new();
     if !result.next_experiment.text.is_empty() {
         steps.push(format!("Next experiment: {}", result.next_experiment.text));
     }
     if matches!(result.verdict.status, VerdictStatus::Calibration | VerdictStatus::Effect) {
-        steps.push(
-            "The repaired simulator is saved beside this page: “trainer simulate repaired.toml” runs it, and \
-             its section below lists the files for SciPy, Modelica, MuJoCo and URDF."
-                .to_owned(),
-        );
+        let saved = match reader {
+            Reader::CommandLine => {
+                "The repaired simulator is saved beside this page: “trainer simulate repaired.toml” runs it, and \
+                 its section below lists the files for SciPy, Modelica, MuJoCo and URDF."
+            }
+            Reader::Page => {
+                "Save the repaired simulator, for SciPy, Modelica, MuJoCo or URDF, or as repaired.toml: dropped beside \
+                 another log of this system, it is the simulator of the next diagnosis."
+            }
+        };
+        steps.push(saved.to_owned());
     }
     steps
 }

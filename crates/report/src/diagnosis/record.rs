@@ -8,7 +8,7 @@ use crate::classes::listed;
 use crate::figures::{Figure, csv, number};
 use crate::format::{self, quantity, significant};
 use crate::plot::{Axis, BREAK, Hue, Mark, Plot, Series};
-use crate::whole;
+use crate::{Reader, whole};
 
 /// Largest number of samples shown of the worst stretch: a few periods of an ordinary record.
 const MOST_SHOWN: usize = 500;
@@ -29,12 +29,16 @@ impl Worst<'_> {
 }
 
 /// Returns the plot that shows record and simulators together, for the top of the page, and the others.
-pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> (Vec<Figure>, Vec<Figure>) {
+pub(super) fn figures(
+    result: &DiagnosisResult,
+    rows: &[SeriesRow],
+    reader: Reader,
+) -> (Vec<Figure>, Vec<Figure>) {
     let Some(worst) = worst(rows) else { return (Vec::new(), Vec::new()) };
     let wholes = result.records.iter().take(MOST_RECORDS).enumerate().filter_map(|(index, record)| {
         let of = if result.records.len() > 1 { format!(" of record {}", index + 1) } else { String::new() };
         let title = format!("The part{of} that was read");
-        whole::figure(format!("whole-{}", index + 1), title, observed_axis(result), &record.reading)
+        whole::figure(format!("whole-{}", index + 1), title, observed_axis(result), &record.reading, reader)
     });
     let others = [
         overview(result, rows, &worst),

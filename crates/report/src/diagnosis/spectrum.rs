@@ -1,6 +1,6 @@
 //! Spectrum of a record, with its modes.
 
-use results::{DiagnosisResult, ModeRow, SeriesRow};
+use results::{DiagnosisResult, SeriesRow};
 use std::f64::consts::TAU;
 
 use super::figures::{framed, observed_axis};
@@ -17,20 +17,10 @@ const HARMONICS: f64 = 5.0;
 /// Returns the amplitude spectrum of the first record.
 pub(super) fn figure(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Figure> {
     let first = rows.chunk_by(|one, next| one.record == next.record).next()?;
-    let spectrum = spectrum(first)?;
-    let plot = Plot {
-        x: Axis::linear("frequency (Hz)"),
-        y: Axis::log(format!("amplitude of {}", observed_axis(result).label)),
-        series: std::iter::once(Series {
-            label: "recorded".to_owned(),
-            hue: Hue::Data,
-            mark: Mark::Line,
-            points: spectrum.clone(),
-        })
-        .chain(marked(&result.modes, &spectrum))
-        .collect(),
-        shaded: vec![],
-    };
+    let samples: Vec<(f64, f64)> = first.iter().map(|row| (row.time_s, row.observed)).collect();
+    let lines: Vec<(f64, bool)> =
+        result.modes.iter().map(|mode| (mode.frequency_hz.value, mode.steady)).collect();
+    let plot = plot(&samples, &lines, &observed_axis(result).label)?;
     let drawing = plot.draw("Spectrum: amplitude over frequency.")?;
     let which = if result.records.len() > 1 { "first record" } else { "record" };
     let explanation = format!(
@@ -40,40 +30,52 @@ pub(super) fn figure(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Fig
             modes => sentence(modes),
         }
     );
-    let table = csv(&["frequency_hz", "amplitude"], &spectrum, |(frequency, amplitude): &(f64, f64)| {
+    let lines = plot.series.first().map(|series| series.points.as_slice()).unwrap_or_default();
+    let table = csv(&["frequency_hz", "amplitude"], lines, |(frequency, amplitude): &(f64, f64)| {
         vec![number(*frequency), number(*amplitude)]
     });
     Some(framed("spectrum", "Spectrum".to_owned(), explanation, drawing, table))
 }
 
-/// Returns marks on a spectrum at the modes and at the steady lines, if there are some within it.
-fn marked(modes: &[ModeRow], spectrum: &[(f64, f64)]) -> Vec<Series> {
-    let point = |mode: &ModeRow| {
-        let frequency = mode.frequency_hz.value;
-        let from = spectrum.partition_point(|(line, _)| *line < frequency);
-        spectrum.get(from).map(|(_, amplitude)| (frequency, *amplitude))
+/// Returns the plot of the amplitude spectrum of samples (times in seconds, values), with a Hann window, and a dot at each of the
+/// `lines` by its frequency in Hz: a mode or, where its flag says so, a steady line. `label` names the values with their unit.
+/// `None` for samples without a spectrum.
+#[must_use]
+pub fn plot(samples: &[(f64, f64)], lines: &[(f64, bool)], label: &str) -> Option<Plot> {
+    let highest = lines.iter().map(|line| line.0).fold(f64::NAN, f64::max);
+    let found = spectrum(samples, Some(highest).filter(|highest| *highest > 0.0))?;
+    let nearest = |line: &(f64, bool)| {
+        let off = |own: &&(f64, f64)| (own.0 - line.0).abs();
+        let own = found.iter().min_by(|one, other| off(one).total_cmp(&off(other)))?;
+        Some((line.0, own.1))
     };
-    let of = |label: &str, hue: Hue, steady: bool| Series {
-        label: label.to_owned(),
-        hue,
-        mark: Mark::Dots,
-        points: modes.iter().filter(|mode| mode.steady == steady).filter_map(point).collect(),
+    let series = |label: &str, hue, mark, points| Series { label: label.to_owned(), hue, mark, points };
+    let marked = |label: &str, hue: Hue, steady: bool| {
+        let points: Vec<_> = lines.iter().filter(|line| line.1 == steady).filter_map(nearest).collect();
+        (!points.is_empty()).then(|| series(label, hue, Mark::Dots, points))
     };
-    let marks = [of("modes", Hue::Estimate, false), of("steady lines", Hue::Second, true)];
-    marks.into_iter().filter(|series| !series.points.is_empty()).collect()
+    let marks = [marked("modes", Hue::Oracle, false), marked("steady lines", Hue::Second, true)];
+    let recorded = series("recorded", Hue::Data, Mark::Line, found.clone());
+    Some(Plot {
+        x: Axis::linear("frequency (Hz)"),
+        y: Axis::log(format!("amplitude of {label}")),
+        series: std::iter::once(recorded).chain(marks.into_iter().flatten()).collect(),
+        shaded: vec![],
+    })
 }
 
-/// Returns frequencies in Hz and amplitudes, from one line over the record to a few times the strongest one.
-fn spectrum(rows: &[SeriesRow]) -> Option<Vec<(f64, f64)>> {
+/// Returns frequencies in Hz and amplitudes, from one line over the record to a few times the strongest one, which is
+/// searched for unless a frequency to begin with is known.
+fn spectrum(rows: &[(f64, f64)], known_hz: Option<f64>) -> Option<Vec<(f64, f64)>> {
     let stride = rows.len().div_ceil(MOST_SAMPLES).max(1);
     let count = rows.len() as f64;
-    let mean = rows.iter().map(|row| row.observed).sum::<f64>() / count;
+    let mean = rows.iter().map(|row| row.1).sum::<f64>() / count;
     let samples: Vec<(f64, f64)> = rows
         .chunks(stride)
         .map(|part| {
             let size = part.len() as f64;
-            let time = part.iter().map(|row| row.time_s).sum::<f64>() / size;
-            (time, part.iter().map(|row| row.observed).sum::<f64>() / size - mean)
+            let time = part.iter().map(|row| row.0).sum::<f64>() / size;
+            (time, part.iter().map(|row| row.1).sum::<f64>() / size - mean)
         })
         .collect();
     let (start, end) = (samples.first()?.0, samples.last()?.0);
@@ -97,39 +99,35 @@ fn spectrum(rows: &[SeriesRow]) -> Option<Vec<(f64, f64)>> {
         (0..=count).map(place).map(|frequency| (frequency, amplitude(frequency))).collect()
     };
     let lowest = 1.0 / duration;
-    let coarse =
-        lines(lowest, nyquist, (2.0 * duration * nyquist).clamp(2.0, 4.0 * MOST_LINES as f64) as usize);
-    let strongest = coarse.iter().max_by(|one, other| one.1.total_cmp(&other.1))?.0;
+    let searched = || {
+        let count = (2.0 * duration * nyquist).clamp(2.0, 4.0 * MOST_LINES as f64) as usize;
+        let coarse = lines(lowest, nyquist, count);
+        Some(coarse.iter().max_by(|one, other| one.1.total_cmp(&other.1))?.0)
+    };
+    let strongest = known_hz.or_else(searched)?;
     let found = lines(lowest, (HARMONICS * strongest).min(nyquist), MOST_LINES);
     (duration > 0.0 && found.iter().all(|(_, amplitude)| amplitude.is_finite())).then_some(found)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::spectrum;
-    use results::SeriesRow;
+    use super::plot;
     use std::f64::consts::TAU;
 
     #[test]
-    fn a_sinusoid_has_its_amplitude_at_its_frequency() {
-        let row = |at: usize| {
-            let time_s = 0.01 * at as f64;
-            let observed = 3.0 + 0.7 * (TAU * 2.0 * time_s).cos();
-            let [nominal, recalibrated, repaired] = [observed; 3];
-            SeriesRow {
-                record: 1,
-                segment: 1,
-                time_s,
-                observed,
-                nominal,
-                recalibrated,
-                repaired,
-                input_torque: None,
-            }
+    fn a_sinusoid_has_its_amplitude_at_its_frequency_and_modes_are_marked() {
+        let sample = |at: usize| {
+            let time = 0.01 * at as f64;
+            (time, 3.0 + 0.7 * (TAU * 2.0 * time).cos())
         };
-        let rows: Vec<SeriesRow> = (0..4000).map(row).collect();
-        let found = spectrum(&rows).unwrap();
-        let top = found.iter().max_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
-        assert!((top.0 - 2.0).abs() < 0.03 && (top.1 - 0.7).abs() < 0.05, "{top:?}");
+        let samples: Vec<(f64, f64)> = (0..4000).map(sample).collect();
+        for modes in [&[][..], &[(2.0, false)], &[(2.0, false), (2.1, true)]] {
+            let drawn = plot(&samples, modes, "angle (rad)").unwrap();
+            let lines = &drawn.series[0].points;
+            let top = lines.iter().max_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
+            assert!((top.0 - 2.0).abs() < 0.03 && (top.1 - 0.7).abs() < 0.05, "{top:?}");
+            let marks: Vec<&str> = drawn.series[1..].iter().map(|own| own.label.as_str()).collect();
+            assert_eq!(marks, &["modes", "steady lines"][..modes.len()]);
+        }
     }
 }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::{RunTexts, render, render_run};
 
 /// Returns a made-up small diagnosis without any of the optional parts.
-fn small() -> Value {
+pub(crate) fn small() -> Value {
     let estimate = json!({ "value": 0.5, "interval_95": [0.25, null] });
     let cell = json!({ "bounds": [[0.0, 1.0]], "value": 0.02, "repaired": 0.001, "band": 0.003,
                        "significant": true, "samples": 100 });
@@ -89,6 +89,7 @@ const EMPTY: RunTexts<'static> = RunTexts {
     predictions: "",
     series: "",
     environment: "",
+    reader: crate::Reader::CommandLine,
 };
 
 fn page(result: &Value, series: &str) -> String {
@@ -393,4 +394,18 @@ fn errors_that_are_about_the_same_have_no_bars_on_a_logarithmic_scale() {
         result["gap"][key] = json!(error);
     }
     assert!(!page(&result, "").contains("On a logarithmic scale"));
+}
+
+#[test]
+fn a_report_in_the_page_speaks_of_what_the_page_can_do() {
+    let mut result = small();
+    result["verdict"]["summary"] = "Are the stamps in ms? Set --time-unit ms".into();
+    let text = result.to_string();
+    let texts = RunTexts { result: &text, ..EMPTY };
+    let page = render(&RunTexts { reader: crate::Reader::Page, ..texts }).unwrap();
+    assert!(page.contains("Set “time unit” ms"));
+    assert!(!page.contains("trainer simulate"));
+    let beside_the_command_line = render(&texts).unwrap();
+    assert!(beside_the_command_line.contains("Set --time-unit ms"));
+    assert!(beside_the_command_line.contains("trainer simulate repaired.toml"));
 }

@@ -42,6 +42,7 @@ struct JointView<'a> {
     armature: String,
     damping: String,
     offset: String,
+    gain: String,
     frequency: String,
 }
 
@@ -157,6 +158,7 @@ fn joint(row: &JointRow) -> JointView<'_> {
         armature: with_unit(row.repair.armature, inertia),
         damping: with_unit(row.repair.damping, damping),
         offset: with_unit(row.repair.torque_offset, torque),
+        gain: with_unit(row.repair.torque_gain, "1"),
         frequency: quantity(&significant(row.tracking.frequency_hz, 2), "Hz"),
     }
 }

@@ -168,6 +168,7 @@ impl Folder {
             predictions: &table(&self.rows),
             series: "",
             environment: "{}\n",
+            reader: crate::Reader::CommandLine,
         })
     }
 }

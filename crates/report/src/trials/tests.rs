@@ -66,6 +66,7 @@ fn texts(result: &str) -> RunTexts<'_> {
         predictions: "",
         series: "",
         environment: "",
+        reader: crate::Reader::CommandLine,
     }
 }
 

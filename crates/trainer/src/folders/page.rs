@@ -1,7 +1,7 @@
 //! Report and tables of a run, derived from the other files of its folder.
 
 use crate::error::TrainerError;
-use report::{RunTexts, comparison_markdown, prediction_markdown, render};
+use report::{Reader, RunTexts, comparison_markdown, prediction_markdown, render};
 use runs::RunFolder;
 use serde_json::Value;
 use std::path::Path;
@@ -24,6 +24,7 @@ pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
         predictions: &texts.predictions,
         series: &texts.series,
         environment: &texts.environment,
+        reader: Reader::CommandLine,
     })?;
     folder.write("report.html", html.as_bytes())?;
     Ok(())

@@ -24,6 +24,7 @@ struct Check<'a> {
     part: Range<f64>,
     acting: [Vec<Acting>; 3],
     holds: Vec<Hold>,
+    gains: Vec<f64>,
     held_out: String,
 }
 
@@ -72,13 +73,16 @@ impl RobotQuestion {
         span: f64,
         floors: &[f64],
     ) -> Result<Vec<ClosedLoopRecording>, RobotError> {
+        let exact = vec![1.0; check.gains.len()];
+        // The model as given takes the torques as they were read.
+        let gains = [&exact, &check.gains, &check.gains];
         let one = |own: &&LoadedRecording| {
-            let of = |acting: &Vec<Acting>| {
-                let variant = Variant { acting, holds: &check.holds };
+            let of = |(acting, gains): (&Vec<Acting>, &Vec<f64>)| {
+                let variant = Variant { acting, holds: &check.holds, gains };
                 closed_loop(&*self.model, variant, &own.along, (span, check.part.clone()))
             };
             let found: Vec<ClosedLoop> =
-                check.acting.par_iter().map(of).collect::<Result<_, RobotError>>()?;
+                check.acting.par_iter().zip(gains).map(of).collect::<Result<_, RobotError>>()?;
             Ok(row(self, own, &found, floors))
         };
         check.recordings.iter().map(one).collect()
@@ -101,6 +105,7 @@ impl RobotQuestion {
                 part: 0.0..1.0,
                 acting: self.acting(answers),
                 holds: self.holds(answers),
+                gains: self.gains(answers),
                 held_out: "the recordings given with --check, which no fit has seen".to_owned(),
             });
         }
@@ -126,6 +131,7 @@ impl RobotQuestion {
             part,
             acting: self.acting(&again),
             holds: self.holds(&again),
+            gains: self.gains(&again),
             held_out: held_out.to_owned(),
         })
     }
@@ -164,6 +170,15 @@ impl RobotQuestion {
         let first = answers.first().map_or(Hold::Linear, |own| own.hold);
         let of = |joint: &robot::JointInfo| {
             answers.iter().find(|own| own.joint.name == joint.name).map_or(first, |own| own.hold)
+        };
+        self.model.joints().iter().map(of).collect()
+    }
+
+    /// Returns the torque of each drive over what its sensor reads: 1 where the recordings say nothing else.
+    fn gains(&self, answers: &[JointAnswer]) -> Vec<f64> {
+        let of = |joint: &robot::JointInfo| {
+            let answer = answers.iter().find(|own| own.joint.name == joint.name);
+            answer.and_then(|own| own.repair.torque_gain).map_or(1.0, |gain| gain.value)
         };
         self.model.joints().iter().map(of).collect()
     }

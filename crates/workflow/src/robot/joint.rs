@@ -13,7 +13,7 @@ use experiment::StatedNominal;
 use export::{equation_latex, equation_text};
 use record::{Fault, Quantity, Record};
 use results::{CalibratedRow, Calibration, Equation, JointRepairRow, TrackingRow, WithInterval};
-use robot::{Along, JointInfo, Projected, RobotError, Scale, Tracking, project};
+use robot::{Along, Gain, JointInfo, Projected, RobotError, Scale, Tracking, project};
 use std::f64::consts::TAU;
 
 /// Effects that are no candidates for a joint: they would change the spring and damper that hold its simulator, or
@@ -50,6 +50,8 @@ pub struct JointQuestion {
     pub scale: Scale,
     /// Mean of the constant torques that were taken out of the drive, in N m or N.
     pub offset: f64,
+    /// Gain of the torque sensor; `None` if it is not told from 1.
+    pub gain: Option<Gain>,
     /// Question of the joint as an oscillator.
     pub question: Question,
 }
@@ -100,8 +102,8 @@ impl RobotQuestion {
         let question = Question::new(given, stated, self.name.clone())?;
         let count = projected.parts.len().max(1) as f64;
         let offset = projected.parts.iter().map(|part| part.offset).sum::<f64>() / count;
-        let Projected { tracking, hold, scale, .. } = projected;
-        Ok(JointQuestion { joint: info, tracking, hold, scale, offset, question })
+        let Projected { tracking, hold, scale, gain, .. } = projected;
+        Ok(JointQuestion { joint: info, tracking, hold, scale, offset, gain, question })
     }
 }
 
@@ -181,12 +183,13 @@ impl JointQuestion {
         }
         let Tracking { inertia, damping, stiffness } = self.tracking;
         let calibration = answer.result.calibration.clone();
-        let with_offset = |mut own: JointRepairRow| {
+        let with_sensor = |mut own: JointRepairRow| {
             own.torque_offset = own.torque_offset.map(|found| less(found, -self.offset));
+            own.torque_gain = self.gain.map(|gain| WithInterval::normal(gain.value, gain.std_error));
             own
         };
-        let repair = with_offset(beyond(&calibration, &self.tracking, |row| row.repaired));
-        let recalibrated = with_offset(beyond(&calibration, &self.tracking, |row| row.recalibrated));
+        let repair = with_sensor(beyond(&calibration, &self.tracking, |row| row.repaired));
+        let recalibrated = with_sensor(beyond(&calibration, &self.tracking, |row| row.recalibrated));
         let acting = [
             Acting { damping: self.joint.damping, effects: self.known(), ..Acting::default() },
             acting(&self.joint, &recalibrated, self.recalibrated(&answer)),
@@ -251,6 +254,7 @@ fn beyond(
         damping: of(&calibration.damping).map(|own| less(own, tracking.damping)),
         stiffness: stiffness.map(|own| less(own, tracking.stiffness)),
         torque_offset: offset,
+        torque_gain: None,
     }
 }
 

@@ -144,5 +144,13 @@ fn repair(own: &JointAnswer, format: &str) -> JointRepair {
             significant(offset.value)
         ));
     }
+    if let Some(gain) = own.repair.torque_gain {
+        remarks.push(format!(
+            "The torque is {} times what its sensor reads (95 % interval {} to {}).",
+            significant(gain.value),
+            significant(gain.interval_95[0]),
+            significant(gain.interval_95[1])
+        ));
+    }
     JointRepair { damping, friction, armature: held, stiffness: spring, remarks }
 }

@@ -7,8 +7,9 @@ use report::format::{
 use results::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, MapCell, VerdictStatus, WithInterval};
 use std::path::Path;
 
-/// Formats a diagnosis for the terminal.
+/// Formats a diagnosis for the terminal, in the unit of the log as its report has it.
 pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
+    let result = &report::in_log_unit(result);
     let parts = [
         verdict(result),
         classes(result),

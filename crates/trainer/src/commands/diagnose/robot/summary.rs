@@ -65,12 +65,14 @@ fn missing(result: &JointsResult) -> String {
 fn coefficients(result: &JointsResult) -> String {
     let row = |joint: &JointRow| {
         let symbols = match joint.diagnosis.gap.unit.as_str() {
-            "m" => ["kg", "N s/m", "N"],
-            _ => ["kg m^2", "N m s/rad", "N m"],
+            "m" => ["kg", "N s/m", "N", "1"],
+            _ => ["kg m^2", "N m s/rad", "N m", "1"],
         };
         let own = &joint.repair;
-        let cells =
-            [own.armature, own.damping, own.torque_offset].into_iter().zip(symbols).map(|(own, symbol)| {
+        let cells = [own.armature, own.damping, own.torque_offset, own.torque_gain]
+            .into_iter()
+            .zip(symbols)
+            .map(|(own, symbol)| {
                 own.map_or_else(|| "–".to_owned(), |own| estimate(own.value, own.interval_95, unit(symbol)))
             });
         std::iter::once(joint.name.clone()).chain(cells).collect()
@@ -79,7 +81,7 @@ fn coefficients(result: &JointsResult) -> String {
     if rows.is_empty() {
         String::new()
     } else {
-        table(&["beside them, 95 % interval", "armature", "damping", "torque offset"], rows)
+        table(&["beside them, 95 % interval", "armature", "damping", "torque offset", "torque gain"], rows)
     }
 }
 
