@@ -93,7 +93,10 @@ pub(crate) fn driven(
         nearest(guess.into_iter().chain(best).filter_map(|start| problem.fitted(start)))
     });
     let found = nearest(fits.into_iter().flatten())?;
-    let jumping = jumps::jumping(record, clock, &pushes, &found.1);
+    let start = [found.1.stiffness.value, found.1.damping.value];
+    let jumping = jumps::jumping(&pushes, 1.0 / clock.sample_rate_hz, |pushes, kept| {
+        Problem::new(record, clock, (pushes, kept), 0, noise).fitted(start)
+    });
     let (rest, found) = nearest(jumping.into_iter().chain([found]))?;
     // A response misses much more of a system that is not linear than a regression over short windows.
     let is_linear = rest < record.len() as f64 * (LINEAR * noise).powi(2);

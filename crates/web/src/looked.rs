@@ -79,6 +79,7 @@ fn shown(log: &Log, found: &Looked, surest: Option<(&Log, &Looked)>, settings: &
     let modes = modes.iter().map(|mode| {
         let [frequency, ratio] = [&mode.frequency_hz, &mode.damping_ratio]
             .map(|number| with_uncertainty(number.value, number.std_error()));
+        let ratio = if mode.steady { "none: a steady line".to_owned() } else { ratio };
         [frequency, ratio, percent(100.0 * mode.share)]
     });
     json!({

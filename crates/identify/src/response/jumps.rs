@@ -1,22 +1,20 @@
 //! Commands that jump between two samples.
 
-use super::{Problem, nearest, noise_of};
-use crate::LinearOscillator;
-use record::{Clock, Record, median};
+use record::median;
 
 /// Change of an input, in median ones, from which it jumps.
 const JUMPS: f64 = 20.0;
 
-/// Fits the response to a command that jumps at any time up to one sample before the new value is written, and is held or
-/// changes evenly between its jumps; `None` for an input that does not jump.
+/// Fits the response to a command that jumps at any time up to one sample, `interval` seconds, before the new value is written,
+/// and is held or changes evenly between its jumps; `None` for an input that does not jump. `fit` gives the sum of the squared
+/// residuals and the answer to pushes at times, held or not.
 ///
 /// The sum of the squared residuals is nearly a parabola in the time of the jumps.
-pub(super) fn jumping(
-    record: &Record,
-    clock: &Clock,
+pub(super) fn jumping<T>(
     pushes: &[(f64, f64)],
-    found: &LinearOscillator,
-) -> Option<(f64, LinearOscillator)> {
+    interval: f64,
+    fit: impl Fn(&[(f64, f64)], bool) -> Option<(f64, T)>,
+) -> Option<(f64, T)> {
     let changes = pushes.iter().zip(pushes.iter().skip(1)).map(|(one, next)| (next.1 - one.1).abs());
     let least = JUMPS * median(changes.clone().collect())?;
     // A held input changes at every jump alone.
@@ -24,20 +22,17 @@ pub(super) fn jumping(
     if !changes.clone().any(|change| change >= least) {
         return None;
     }
-    let start = [found.stiffness.value, found.damping.value];
-    let interval = 1.0 / clock.sample_rate_hz;
+    let nearest =
+        |fits: &mut dyn Iterator<Item = (f64, T)>| fits.min_by(|one, other| one.0.total_cmp(&other.0));
     let fits = [true, false].map(|kept| {
-        let fit = |part: f64| {
-            let moved = moved(pushes, part * interval, if kept { 0.0 } else { least });
-            Problem::new(record, clock, (&moved, kept), 0, noise_of(record)).fitted(start)
-        };
+        let fit = |part: f64| fit(&moved(pushes, part * interval, if kept { 0.0 } else { least }), kept);
         let [now, half, whole] = [fit(0.0)?, fit(0.5)?, fit(1.0)?];
         let slope = 4.0 * half.0 - whole.0 - 3.0 * now.0;
         let bend = 2.0 * (whole.0 - 2.0 * half.0 + now.0);
         let lowest = (bend > 0.0).then(|| (-0.5 * slope / bend).clamp(0.0, 1.0)).and_then(fit);
-        nearest([now, half, whole].into_iter().chain(lowest))
+        nearest(&mut [now, half, whole].into_iter().chain(lowest))
     });
-    nearest(fits.into_iter().flatten())
+    nearest(&mut fits.into_iter().flatten())
 }
 
 /// Returns pushes whose changes of a size or more happen at once, some time before they are written.
