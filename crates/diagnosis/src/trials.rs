@@ -156,7 +156,7 @@ fn bank(only: Option<&str>) -> Vec<Outcome> {
         .map(|&(hidden, values, number)| {
             let mut generator = Seed::new(7).child(hidden).child(&number.to_string()).generator();
             let mut draw = |low: f64, high: f64| -> f64 { generator.random_range(low..high) };
-            let size = 2.0_f64.powf(draw(-1.0, 1.0));
+            let size = libm::pow(2.0_f64, draw(-1.0, 1.0));
             let release = draw(0.45, 0.9);
             let is_chain = CHAINS.iter().any(|case| case.0 == hidden);
             let mut values = values.to_vec();

@@ -56,7 +56,7 @@ pub(crate) fn everything() -> Vec<(&'static str, &'static [f64])> {
 /// A command with a torque of up to 12 and a rising frequency, 50 samples a second.
 pub(crate) fn command(duration: f64, hold: Hold) -> Input {
     let times = grid(duration, 50.0);
-    let values = times.iter().map(|t| 12.0 * (19.0 * t + 0.8 * t * t).sin()).collect();
+    let values = times.iter().map(|t| 12.0 * libm::sin(19.0 * t + 0.8 * t * t)).collect();
     Input::new(times, values, hold).unwrap()
 }
 

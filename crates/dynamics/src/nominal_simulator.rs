@@ -66,14 +66,14 @@ impl NominalSimulator {
         let Some((torque, angle)) = self.effects.iter().find_map(|known| weight(&known.active)) else {
             return (rest, stiffness);
         };
-        let potential = |x: f64| 0.5 * stiffness * (x - rest).powi(2) - torque * (x + angle).cos();
+        let potential = |x: f64| 0.5 * stiffness * (x - rest).powi(2) - torque * libm::cos(x + angle);
         // The position hanging straight down, and `POSITIONS` positions within half a turn of the spring's
         // rest angle.
         let step = std::f64::consts::TAU / POSITIONS as f64;
         let around = (0..=POSITIONS).map(|index| rest + (index as f64 - 0.5 * POSITIONS as f64) * step);
         let lowest = around.chain([-angle]).min_by(|a, b| potential(*a).total_cmp(&potential(*b)));
         let place = lowest.unwrap_or(rest);
-        (place, (stiffness + torque * (place + angle).cos()).max(0.0))
+        (place, (stiffness + torque * libm::cos(place + angle)).max(0.0))
     }
 
     /// Returns the angular frequency of small undamped swings, in rad/s; 0 without spring and weight.

@@ -130,7 +130,7 @@ impl Envelope {
     pub fn damping_ratio(&self, decay_rate: f64) -> f64 {
         match self.ratio {
             RatioDefinition::SmallDamping => decay_rate / self.omega_rad_s,
-            RatioDefinition::LogarithmicDecrement => decay_rate / decay_rate.hypot(self.omega_rad_s),
+            RatioDefinition::LogarithmicDecrement => decay_rate / libm::hypot(decay_rate, self.omega_rad_s),
         }
     }
 
@@ -141,7 +141,7 @@ impl Envelope {
         match self.ratio {
             RatioDefinition::SmallDamping => std_error / self.omega_rad_s,
             RatioDefinition::LogarithmicDecrement => {
-                std_error * self.omega_rad_s.powi(2) / decay_rate.hypot(self.omega_rad_s).powi(3)
+                std_error * self.omega_rad_s.powi(2) / libm::hypot(decay_rate, self.omega_rad_s).powi(3)
             }
         }
     }

@@ -69,7 +69,7 @@ impl PaperPipeline {
                     unit: record.unit(),
                 });
             }
-            log_amplitudes.push(amplitude.ln());
+            log_amplitudes.push(libm::log(amplitude));
         }
         let (Some(period_s), Some(&first_peak_s)) = (median(differences(&peak_times, 1)), peak_times.first())
         else {

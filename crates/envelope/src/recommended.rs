@@ -71,7 +71,7 @@ impl Turn {
         // arbitrary lift.
         let most = noise * self.leverage.sqrt() / amplitude.abs();
         let added = variance * (self.lift / amplitude - self.leverage / (2.0 * amplitude.powi(2)));
-        amplitude.abs().ln() - added.clamp(-most, most)
+        libm::log(amplitude.abs()) - added.clamp(-most, most)
     }
 }
 

@@ -21,8 +21,7 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     let decay = line.decay_rate;
     let stiffness = Estimated {
         value: damped * damped + decay * decay,
-        std_error: (2.0 * damped * damped * half_period.std_error / half_period.value)
-            .hypot(2.0 * decay * line.std_error),
+        std_error: libm::hypot(2.0 * damped * damped * half_period.std_error / half_period.value, 2.0 * decay * line.std_error),
     };
     let rest = (order(record.quantity()) == 0).then(|| Estimated {
         value: extraction.offset,
@@ -58,7 +57,7 @@ pub fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
         .collect();
     let heights = envelope.log_amplitudes();
     let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weights = || heights.iter().map(|height| (2.0 * (height - highest)).exp());
+    let weights = || heights.iter().map(|height| libm::exp(2.0 * (height - highest)));
     let numbers = || std::iter::once(0.0).chain(numbers.iter().copied());
     let total: f64 = weights().sum();
     let middle = weights().zip(numbers()).map(|(weight, number)| weight * number).sum::<f64>() / total;
@@ -81,7 +80,7 @@ fn scatter(envelope: &Envelope, line: &oracle::DecayFit) -> f64 {
         .times_s()
         .iter()
         .zip(envelope.log_amplitudes())
-        .map(|(&time, logarithm)| (logarithm.exp() - line.log_amplitude_at(time).exp()).powi(2))
+        .map(|(&time, logarithm)| (libm::exp(*logarithm) - libm::exp(line.log_amplitude_at(time))).powi(2))
         .sum();
     (squares / envelope.len() as f64).sqrt()
 }

@@ -200,7 +200,7 @@ impl Samples {
         let level = |line: &Fitted| noise.background(line.line.omega, fit.count);
         // Bayesian information criterion for four more numbers and noise of a known level.
         let gain = Fit::new(samples, &before.guesses())?.rest - fit.rest;
-        let price = 4.0 * (fit.count as f64).ln() + LEAST_GAIN;
+        let price = 4.0 * libm::log(fit.count as f64) + LEAST_GAIN;
         if gain < price * level(weakest) {
             return Some(around(weakest, narrow));
         }
@@ -256,18 +256,18 @@ impl Samples {
         let power: f64 = lines.iter().map(|(_, line)| line.energy).sum();
         let mode = |(is_steady, line): &(bool, &Fitted)| {
             let Line { omega, decay } = line.line;
-            let natural = omega.hypot(decay);
+            let natural = libm::hypot(omega, decay);
             let level = noise.noise(omega, fit.count);
             let [omega_error, decay_error, _] = line.variances.map(|variance| (variance * level).sqrt());
             let rate = natural / TAU / self.duration_s;
             Mode {
                 frequency_hz: Estimated {
                     value: rate,
-                    std_error: rate * (omega * omega_error).hypot(decay * decay_error) / natural.powi(2),
+                    std_error: rate * libm::hypot(omega * omega_error, decay * decay_error) / natural.powi(2),
                 },
                 damping_ratio: Estimated {
                     value: decay / natural,
-                    std_error: (omega * omega * decay_error).hypot(omega * decay * omega_error)
+                    std_error: libm::hypot(omega * omega * decay_error, omega * decay * omega_error)
                         / natural.powi(3),
                 },
                 amplitude: line.amplitude() * self.size,

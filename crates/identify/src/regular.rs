@@ -56,15 +56,15 @@ struct Step {
 impl Step {
     fn new(pair: &[Window], noise: f64) -> Option<Self> {
         let [one, next] = pair else { return None };
-        let angle = |window: &Window| window.parts.1.atan2(window.parts.0);
+        let angle = |window: &Window| libm::atan2(window.parts.1, window.parts.0);
         let phase = angle(next) - angle(one);
         let error = |window: &Window| noise * window.leverage.sqrt() / window.amplitude();
         Some(Self {
             from: one.time,
             to: next.time,
             phase: phase - TAU * (phase / TAU).round(),
-            logarithm: (next.amplitude() / one.amplitude()).ln(),
-            std_error: error(one).hypot(error(next)),
+            logarithm: libm::log(next.amplitude() / one.amplitude()),
+            std_error: libm::hypot(error(one), error(next)),
         })
     }
 }

@@ -85,7 +85,7 @@ pub(crate) fn driven(
     let fits = [true, false].map(|kept| {
         let problem = Problem::new(record, clock, (&pushes, kept), 0, noise);
         let grid = (0..GRID).flat_map(|number| {
-            let omega = slowest * (fastest / slowest).powf(f64::from(number) / f64::from(GRID - 1));
+            let omega = slowest * libm::pow(fastest / slowest, f64::from(number) / f64::from(GRID - 1));
             DAMPINGS.map(|ratio| [omega * omega, 2.0 * ratio * omega])
         });
         let left = |start: &[f64; 2]| problem.best_of(*start).map_or(f64::INFINITY, |(_, sums)| sums.rest);

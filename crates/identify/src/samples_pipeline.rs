@@ -91,7 +91,7 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn amplitude(&self) -> f64 {
-        self.parts.0.hypot(self.parts.1)
+        libm::hypot(self.parts.0, self.parts.1)
     }
 
     fn scatter(&self) -> f64 {
@@ -108,7 +108,7 @@ impl SamplesPipeline {
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
         let (swing, Found { windows, noise, offset }) = self.fitted(record, clock)?;
         let first = windows.first().map_or(f64::NAN, |window| window.time);
-        let logarithms = windows.iter().map(|window| window.amplitude().ln()).collect();
+        let logarithms = windows.iter().map(|window| libm::log(window.amplitude())).collect();
         let errors = windows.iter().map(|window| noise * window.leverage.sqrt() / window.amplitude());
         Ok(Extraction {
             pipeline: "samples",
@@ -141,7 +141,7 @@ impl SamplesPipeline {
         Ok(LinearOscillator {
             stiffness: Estimated {
                 value: omega.value.powi(2) + decay.value.powi(2),
-                std_error: 2.0 * (omega.value * omega.std_error).hypot(decay.value * decay.std_error),
+                std_error: 2.0 * libm::hypot(omega.value * omega.std_error, decay.value * decay.std_error),
             },
             damping: decay.times(2.0),
             rest: (order(record.quantity()) == 0)
@@ -191,7 +191,7 @@ impl SamplesPipeline {
             let found = self.round(&swing, periods, clock)?;
             let before = (swing.omega, swing.decay);
             swing = swing.corrected(&found)?;
-            if (swing.omega - before.0).hypot(swing.decay - before.1) < SETTLED * swing.omega {
+            if libm::hypot(swing.omega - before.0, swing.decay - before.1) < SETTLED * swing.omega {
                 return Ok((swing, found));
             }
         }
@@ -296,7 +296,7 @@ impl Swing {
     /// Returns windows whose phases are those of the swing's own phase at the same time.
     fn turned(&self, windows: Vec<Window>) -> Vec<Window> {
         let turn = |window: Window| {
-            let (sine, cosine) = (self.omega * window.time).sin_cos();
+            let (sine, cosine) = libm::sincos(self.omega * window.time);
             let (x, y) = window.parts;
             Window { parts: (x * cosine - y * sine, x * sine + y * cosine), ..window }
         };
@@ -310,13 +310,13 @@ impl Swing {
         let mut before: Option<f64> = None;
         let phases = windows.iter().map(|window| {
             let (cosine, sine) = window.parts;
-            let phase = sine.atan2(cosine) + self.omega * window.time;
+            let phase = libm::atan2(sine, cosine) + self.omega * window.time;
             let step = phase - before.replace(phase).unwrap_or(phase);
             turned += step - TAU * (step / TAU).round();
             turned
         });
         let phases: Vec<f64> = phases.collect();
-        let logarithms: Vec<f64> = windows.iter().map(|window| -window.amplitude().ln()).collect();
+        let logarithms: Vec<f64> = windows.iter().map(|window| -libm::log(window.amplitude())).collect();
         [slope(windows, &phases, noise), slope(windows, &logarithms, noise)]
     }
 
@@ -364,8 +364,8 @@ impl Sums {
         let (mut normal, mut ones, mut products) = (Matrix2::zeros(), Vector2::zeros(), Vector2::zeros());
         let (mut sum, mut squares) = (0.0, 0.0);
         for (&time, &value) in times.iter().zip(values) {
-            let (sine, cosine) = (swing.omega * (time - center)).sin_cos();
-            let row = Vector2::new(cosine, sine) * (-swing.decay * (time - center)).exp();
+            let (sine, cosine) = libm::sincos(swing.omega * (time - center));
+            let row = Vector2::new(cosine, sine) * libm::exp(-swing.decay * (time - center));
             normal += row * row.transpose();
             ones += row;
             products += row * value;

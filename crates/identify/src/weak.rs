@@ -166,13 +166,13 @@ impl<'a> Samples<'a> {
         let (longest, shortest) = (self.duration() / 2.0, 8.0 * self.step * stride as f64);
         let period = |number: u32| {
             let share = f64::from(number) / f64::from(FREQUENCIES);
-            longest * (shortest / longest).powf(share)
+            longest * libm::pow(shortest / longest, share)
         };
         let power = |period: f64| {
             let rate = TAU / period;
             let picked = self.times.iter().zip(&self.values).step_by(stride);
             let (sine, cosine) = picked.fold((0.0, 0.0), |(sine, cosine), (time, value)| {
-                let (s, c) = (rate * time).sin_cos();
+                let (s, c) = libm::sincos(rate * time);
                 (sine + value * s, cosine + value * c)
             });
             sine * sine + cosine * cosine

@@ -46,7 +46,7 @@ impl Record {
         if STEPS * self.quantum() > amplitude || band > amplitude {
             return None;
         }
-        let swing = (1.0 - band / amplitude).acos() * 2.0 / PI * half_swing;
+        let swing = libm::acos(1.0 - band / amplitude) * 2.0 / PI * half_swing;
         let stands = |turn: &&Turn| {
             let [first, last] = turn.plateau;
             let samples = (last - first) as f64;

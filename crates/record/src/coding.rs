@@ -38,7 +38,7 @@ pub(crate) fn decoded(values: &[f64], unit: Option<Unit>) -> Option<Decoded> {
         Some(Decoded { values, finding, is_turn: unit.is_some_and(|unit| period == TAU / unit.to_si()) })
     });
     let signs = BITS.filter(|_| whole).filter_map(|bits| {
-        let half = f64::from(bits - 1).exp2();
+        let half = libm::exp2(f64::from(bits - 1));
         let values = signed(values, half).filter(|_| plain >= 0.75 * half)?;
         let finding = format!(
             "the values jump by about {half} where they pass zero: sign and magnitude in {bits} bits, which was undone"
@@ -70,7 +70,7 @@ fn largest_bend(values: &[f64]) -> f64 {
 
 /// Returns the lengths of code after which a series may wrap, in its unit.
 fn periods(unit: Option<Unit>, whole: bool) -> Vec<f64> {
-    let counts = || BITS.map(|bits| f64::from(bits).exp2());
+    let counts = || BITS.map(|bits| libm::exp2(f64::from(bits)));
     match unit {
         // Whole numbers may be counts, whatever unit they are read in.
         Some(unit) if unit.dimension() == Dimension::Angle && unit.order() == 0 => {

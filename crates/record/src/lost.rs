@@ -95,7 +95,7 @@ impl Numbers {
             return None;
         }
         let count = whole as f64;
-        let gain = count * (before.line.squares() / after.line.squares().max(f64::MIN_POSITIVE)).ln();
+        let gain = count * libm::log(before.line.squares() / after.line.squares().max(f64::MIN_POSITIVE));
         let waits = |bend: &Bend| range(&bend.line.residuals) <= LATENESS * interval + 2.0 * rounding;
         let near = if grouped {
             let nearer = NEARER * range(&after.line.residuals) <= range(&before.line.residuals);
@@ -103,7 +103,7 @@ impl Numbers {
         } else {
             (after.line.squares() / count).sqrt() <= SCATTER * interval + rounding
         };
-        if !near || gain <= 2.0 * count.ln() * gaps.len() as f64 {
+        if !near || gain <= 2.0 * libm::log(count) * gaps.len() as f64 {
             return None;
         }
         let of_samples = place(ends, &counted, rows, values);
@@ -186,7 +186,7 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     let length = bent.iter().map(|b| b * b).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
     let constant = 1.0 / (whole as f64).sqrt();
     let mut sums = [0.0; 4];
-    let mut best = (-2.0 * (whole as f64).ln() / 12.0, 0, 0.0);
+    let mut best = (-2.0 * libm::log(whole as f64) / 12.0, 0, 0.0);
     for at in (1..whole).rev() {
         let terms = [residuals[at] / interval, constant, linear[at], bent[at] / length];
         for (sum, term) in sums.iter_mut().zip(terms) {

@@ -12,7 +12,7 @@ pub fn two_digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    let exponent = value.abs().log10().floor();
+    let exponent = libm::log10(value.abs()).floor();
     if (-2.0..4.0).contains(&exponent) {
         let decimals = (1.0 - exponent).max(0.0) as usize;
         format!("{value:.decimals$}")
@@ -33,7 +33,7 @@ pub fn prefixed(value: f64, unit: &str) -> String {
         _ => (1.0, ""),
     };
     let scaled = value * factor;
-    let decimals = (2.0 - scaled.abs().log10().floor()).clamp(0.0, 3.0) as usize;
+    let decimals = (2.0 - libm::log10(scaled.abs()).floor()).clamp(0.0, 3.0) as usize;
     format!("{scaled:.decimals$} {prefix}{unit}")
 }
 

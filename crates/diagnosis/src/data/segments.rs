@@ -429,7 +429,7 @@ const CLOSER: f64 = 0.5;
 /// and sine (or the parabola's coefficients), and the sum of squares that is left.
 fn wave(points: &[(f64, f64)], omega: Option<f64>) -> ([f64; 3], f64) {
     let columns = |time: f64| match omega {
-        Some(omega) => [1.0, (omega * time).cos(), (omega * time).sin()],
+        Some(omega) => [1.0, libm::cos(omega * time), libm::sin(omega * time)],
         None => [1.0, time, time * time],
     };
     let rows = points.iter().flat_map(|(time, _)| columns(*time));

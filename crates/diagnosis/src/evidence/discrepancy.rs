@@ -23,7 +23,7 @@ const RIDGE: f64 = 1e-4;
 /// Evaluates a Chebyshev polynomial of the first kind.
 fn chebyshev(degree: i32, x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
-    (f64::from(degree) * x.acos()).cos()
+    libm::cos(f64::from(degree) * libm::acos(x))
 }
 
 /// Highest degree in the input.

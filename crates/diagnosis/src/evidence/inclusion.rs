@@ -295,7 +295,7 @@ impl<'a> Inclusion<'a> {
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
         let with = || self.sets.weighed.iter().filter(|w| w.fit.hypothesis.holds(class));
         let Some(best) = with().next().map(|w| w.evidence) else { return Vec::new() };
-        let odds = |w: &Weighed<'_>| (w.evidence - best).exp();
+        let odds = |w: &Weighed<'_>| libm::exp(w.evidence - best);
         let total: f64 = with().map(odds).sum();
         let mut members: Vec<(Candidate, f64)> = Vec::new();
         for w in with() {

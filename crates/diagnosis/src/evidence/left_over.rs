@@ -73,7 +73,7 @@ fn larger(first: f64, count: f64, second: f64, others: f64) -> f64 {
         return 0.0;
     }
     let common = (count * first + others * second) / (count + others);
-    0.5 * ((count + others) * common.ln() - count * first.ln() - others * second.ln())
+    0.5 * ((count + others) * libm::log(common) - count * libm::log(first) - others * libm::log(second))
 }
 
 /// Band of the spectrum: the sum of its periodogram, the number of bins, and the number of independent
@@ -106,8 +106,8 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     let length = (last - first).max(f64::MIN_POSITIVE);
     let (mut real, mut imaginary, mut weight) = (0.0, 0.0, 0.0);
     for (time, value) in times.iter().zip(values) {
-        let window = 0.5 - 0.5 * (TAU * (time - first) / length).cos();
-        let (sine, cosine) = (frequency * (time - first)).sin_cos();
+        let window = 0.5 - 0.5 * libm::cos(TAU * (time - first) / length);
+        let (sine, cosine) = libm::sincos(frequency * (time - first));
         real += window * value * cosine;
         imaginary += window * value * sine;
         weight += window * window;
@@ -198,7 +198,7 @@ fn outstanding(bands: &[Band], least: f64) -> (Unexplained, Band) {
             squares += 2.0 * (band.power - band.bins * beside.mean().max(least));
         }
     }
-    let evidence = (evidence - LOOKS.ln()).max(0.0);
+    let evidence = (evidence - libm::log(LOOKS)).max(0.0);
     (Unexplained { evidence, squares: squares.max(0.0) }, bands[SWING - 1].with(bands[SWING + 1]))
 }
 
@@ -218,7 +218,7 @@ fn standing(gains: &[f64]) -> Unexplained {
     let nothing = Unexplained { evidence: 0.0, squares: 0.0 };
     let best = found.fold(nothing, |best, own| if own.evidence > best.evidence { own } else { best });
     let frequencies = (0.5 * gains.len() as f64).max(1.0);
-    Unexplained { evidence: (best.evidence - frequencies.ln() - LOOKS.ln()).max(0.0), ..best }
+    Unexplained { evidence: (best.evidence - libm::log(frequencies) - libm::log(LOOKS)).max(0.0), ..best }
 }
 
 /// Returns the lowest angular frequency of a sustained motion: the swing's or, in driven data, that with
@@ -316,7 +316,7 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
         let columns = columns_of(&paths, data.quantity, &free, acting);
         let (squares, directions) = taken(&residual, &projection, &columns, filter);
         let mean = squares / directions.max(1.0);
-        let evidence = (larger(mean, directions, noise.mean(), noise.worth) - LOOKS.ln()).max(0.0);
+        let evidence = (larger(mean, directions, noise.mean(), noise.worth) - libm::log(LOOKS)).max(0.0);
         if evidence > found.evidence {
             let squares = (squares - directions * noise.mean()).max(0.0);
             found = Unexplained { evidence, squares };

@@ -68,16 +68,16 @@ pub(crate) struct Shown<'e> {
 
 /// Returns the logarithm of a ratio, or 0 if it is not a positive number.
 fn log_ratio(ratio: f64) -> f64 {
-    if ratio.is_finite() && ratio > 0.0 { ratio.ln() } else { 0.0 }
+    if ratio.is_finite() && ratio > 0.0 { libm::log(ratio) } else { 0.0 }
 }
 
 /// Returns ln(1 + x) of log evidence, or 0 if it speaks against the class.
 fn compressed(nats: f64) -> f64 {
-    nats.max(0.0).ln_1p()
+    libm::log1p(nats.max(0.0))
 }
 
 fn logistic(log_odds: f64) -> f64 {
-    1.0 / (1.0 + (-log_odds).exp())
+    1.0 / (1.0 + libm::exp(-log_odds))
 }
 
 impl Learned {

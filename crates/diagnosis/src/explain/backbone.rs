@@ -66,7 +66,7 @@ pub fn backbone(series: &Series, values: &[f64]) -> Vec<Swing> {
                 swings.push(Swing {
                     amplitude: (before + after) / 4.0,
                     frequency: 2.0 * PI / cycle,
-                    decay_rate: (before / after).ln() / (cycle / 2.0),
+                    decay_rate: libm::log(before / after) / (cycle / 2.0),
                 });
             }
         }

@@ -16,7 +16,7 @@ use results::WithInterval;
 
 pub(crate) fn around(value: f64, error: f64) -> WithInterval {
     // A standard error from [`UNBOUNDED`] counts as infinite, whatever the variance that multiplied it.
-    let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
+    let error = if error < libm::pow(UNBOUNDED, 0.4) { error } else { f64::INFINITY };
     let reach = normal_above(0.025) * error;
     WithInterval { value, interval_95: [value - reach, value + reach] }
 }

@@ -94,7 +94,7 @@ pub(crate) fn maps(
                 map.push(Sample { at, recalibrated: *before, repaired: *after });
             };
             add(&mut time, vec![*t]);
-            add(&mut amplitude, vec![(x - rest).hypot(v / omega)]);
+            add(&mut amplitude, vec![libm::hypot(x - rest, v / omega)]);
             add(&mut phase, vec![*x, *v]);
         }
     }
@@ -145,7 +145,7 @@ fn spectrum(
                     let square = |e: &DVector<f64>| {
                         let (mut sine, mut cosine) = (0.0, 0.0);
                         for (time, value) in segment.times.iter().zip(e.iter()) {
-                            let (s, c) = (frequency * (time - first)).sin_cos();
+                            let (s, c) = libm::sincos(frequency * (time - first));
                             sine += s * value;
                             cosine += c * value;
                         }

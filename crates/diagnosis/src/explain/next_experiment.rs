@@ -57,7 +57,7 @@ fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
             && let Some([p, q]) = point.get_mut(at..at + 2)
         {
             // The pair (size·cos, size·sin) turns with the mount.
-            let (sine, cosine) = tilt.sin_cos();
+            let (sine, cosine) = libm::sincos(tilt);
             (*p, *q) = (*p * cosine - *q * sine, *p * sine + *q * cosine);
         }
         at += candidate.parameters(&data.facts).len();

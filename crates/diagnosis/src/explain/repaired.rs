@@ -225,13 +225,13 @@ pub fn rounded(value: f64, error: f64) -> f64 {
     if !(error.is_finite() && error > 0.0) {
         return value;
     }
-    let decimals = f64::from(GUARD) - error.log10().floor();
+    let decimals = f64::from(GUARD) - libm::log10(error).floor();
     // The parse gives the double nearest to the shortest decimal. Beyond these limits the value is returned
     // as it is.
     if !(-300.0..=300.0).contains(&decimals) {
         return value;
     }
-    let size = value.abs().max(f64::MIN_POSITIVE).log10().floor();
+    let size = libm::log10(value.abs().max(f64::MIN_POSITIVE)).floor();
     let digits = (size + decimals).clamp(0.0, 17.0) as usize;
     format!("{value:.digits$e}").parse().unwrap_or(value)
 }

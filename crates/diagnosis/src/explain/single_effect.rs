@@ -20,7 +20,7 @@ fn criterion(fit: &Fit) -> f64 {
     let samples = fit.samples() as f64;
     let starts = fit.point.starts.iter().map(Vec::len).sum::<usize>();
     let parameters = (fit.globals() + starts) as f64;
-    samples * (fit.squares / samples).max(f64::MIN_POSITIVE).ln() + parameters * samples.ln()
+    samples * libm::log((fit.squares / samples).max(f64::MIN_POSITIVE)) + parameters * libm::log(samples)
 }
 
 /// Returns the effect that the Bayesian information criterion for white noise prefers if each effect of the

@@ -64,7 +64,7 @@ impl Fit {
     /// on the same samples, tempered by the autocorrelation time `time`.
     pub(crate) fn nats_behind(&self, squares: f64, time: f64) -> f64 {
         let worth = self.samples() as f64 / time;
-        0.5 * worth * (self.squares.max(f64::MIN_POSITIVE) / squares.max(f64::MIN_POSITIVE)).ln()
+        0.5 * worth * libm::log(self.squares.max(f64::MIN_POSITIVE) / squares.max(f64::MIN_POSITIVE))
     }
 
     /// Returns the factor between [`Self::inverse`] and a covariance: the variance of the residual, times its

@@ -36,7 +36,7 @@ pub(crate) fn driven_modes(
         return Vec::new();
     }
     let [slowest, fastest] = data.facts.modes();
-    let count = ((fastest / slowest).ln() / FINE.ln()).floor() as i32;
+    let count = (libm::log(fastest / slowest) / libm::log(FINE)).floor() as i32;
     let frequencies: Vec<f64> = (0..=count).map(|step| slowest * FINE.powi(step)).collect();
     let columns: Vec<Vec<f64>> = frequencies
         .iter()
@@ -62,8 +62,8 @@ pub(crate) fn driven_modes(
         })
         .collect();
     modes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let ratio = |one: &Mode, other: &Mode| (one.frequency / other.frequency).ln().abs();
-    that_lie_apart(modes, |one, other| ratio(one, other) > APART.ln(), most)
+    let ratio = |one: &Mode, other: &Mode| libm::log(one.frequency / other.frequency).abs();
+    that_lie_apart(modes, |one, other| ratio(one, other) > libm::log(APART), most)
 }
 
 /// Returns the torque of a second body of inertia 1 on the first along a path, at whose beginning both move

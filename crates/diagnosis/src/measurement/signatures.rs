@@ -292,7 +292,7 @@ pub(crate) fn noise_with_speed(data: &Data, fit: &Fit) -> Option<Finding> {
     }
     let (quick, quick_error) = mean_and_error(&fast);
     let (calm, calm_error) = mean_and_error(&slow);
-    let z = (quick - calm) / quick_error.hypot(calm_error);
+    let z = (quick - calm) / libm::hypot(quick_error, calm_error);
     let is_rounding = data.resolution.is_some_and(|step| quick <= 2.0 * (step * step / 12.0));
     // Second differences of white noise are correlated; a factor of 1.5 in the error accounts for it.
     (z > 1.5 * normal_above(1e-4) && quick > 1.75 * calm && !is_rounding).then(|| Finding {

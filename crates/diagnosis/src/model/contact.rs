@@ -15,11 +15,11 @@ pub(crate) struct Bent {
 /// From a reversal on, z = s − (s − z₀)·exp(−path/δ) with the direction s; in a steady swing of amplitude A
 /// it runs between ±tanh(A/δ).
 pub(crate) fn bent(deflection: f64, quadrature: f64, displacement: f64) -> Bent {
-    let amplitude = deflection.hypot(quadrature);
+    let amplitude = libm::hypot(deflection, quadrature);
     let direction = if quadrature < 0.0 { -1.0 } else { 1.0 };
     let path = (amplitude + direction * deflection).max(0.0) / displacement;
-    let reversal = (amplitude / displacement).tanh();
-    let left = (-path).exp();
+    let reversal = libm::tanh(amplitude / displacement);
+    let left = libm::exp(-path);
     // Derivatives by the amplitude over δ, and by the path over δ.
     let (by_reversal, by_path) = (-(1.0 - reversal * reversal) * left, (1.0 + reversal) * left);
     let cosine = if amplitude > 0.0 { deflection / amplitude } else { 0.0 };

@@ -55,7 +55,7 @@ impl Sensor {
         // dt/dr′ at a given stamp, less that at the start, because the start state moves along.
         *by_clock = -0.5 * (time * time - start * start) * rate;
         if let Some((amplitude, phase)) = self.nonlinearity {
-            let (sine, cosine) = (value + phase).sin_cos();
+            let (sine, cosine) = libm::sincos(value + phase);
             value += amplitude * sine;
             slope = 1.0 + amplitude * cosine;
             *by_lag *= slope;

@@ -27,7 +27,7 @@ pub(crate) const MOST_FREQUENCIES: usize = 4000;
 /// The phasor of each sample is rotated from one frequency to the next, which costs four products instead of
 /// a sine and a cosine.
 pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, gains: &mut [f64]) {
-    let turned = |frequency: f64| points.iter().map(move |(time, _)| (frequency * time).sin_cos());
+    let turned = |frequency: f64| points.iter().map(move |(time, _)| libm::sincos(frequency * time));
     let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
     let turns: Vec<(f64, f64)> = turned(step).collect();
     let scale = 2.0 / squares.max(f64::MIN_POSITIVE);

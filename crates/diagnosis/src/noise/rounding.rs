@@ -63,7 +63,7 @@ impl Rounded {
         let term = |k: i32| {
             let order = f64::from(k);
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            sign / order * (-2.0 * (PI * order * noise).powi(2)).exp() * (order * phase).sin()
+            sign / order * libm::exp(-2.0 * (PI * order * noise).powi(2)) * libm::sin(order * phase)
         };
         self.step / PI * (1..=TERMS).map(term).sum::<f64>()
     }

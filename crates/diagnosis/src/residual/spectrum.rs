@@ -73,7 +73,7 @@ pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> 
             let pairs = segment.times.iter().zip(*residual);
             let points: Vec<(f64, f64)> = pairs
                 .map(|(time, value)| {
-                    let weight = (-rate * (time - start)).exp();
+                    let weight = libm::exp(-rate * (time - start));
                     squares += weight * weight;
                     (*time, weight * value)
                 })

@@ -66,7 +66,7 @@ pub(crate) fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked
 
 /// Returns `true` if a linearized gain would count by itself, however much structure is left beside it.
 pub(crate) fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
-    base.nats_behind(base.squares - gain, time) > PROMISE * threshold + looked.ln()
+    base.nats_behind(base.squares - gain, time) > PROMISE * threshold + libm::log(looked)
 }
 
 /// Returns `true` if the gain of a candidate without columns stands out. Such a candidate adds start states
@@ -79,6 +79,6 @@ pub(crate) fn stands_alone(
     looked: f64,
 ) -> bool {
     let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
-    let price = starts * (base.samples() as f64 / time).max(2.0).ln();
+    let price = starts * libm::log((base.samples() as f64 / time).max(2.0));
     stands_out(base, time, gain, threshold.max(price), looked * DECAYS.len() as f64)
 }

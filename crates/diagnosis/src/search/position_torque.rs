@@ -57,7 +57,7 @@ pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<
 pub(crate) fn evidence(data: &Data, with: &Fit, without: &Fit, time: f64) -> f64 {
     let worth = (without.samples() as f64 / time).max(2.0);
     let looked = wavenumbers(data).len().max(1) as f64;
-    ratio(with, without, time) - 0.5 * PARAMETERS * worth.ln() - looked.ln()
+    ratio(with, without, time) - 0.5 * PARAMETERS * libm::log(worth) - libm::log(looked)
 }
 
 /// Returns the wavenumbers that are searched; empty if the samples are too far apart for any.
@@ -94,8 +94,8 @@ fn wave(
     wavenumber: f64,
 ) -> Option<Wave> {
     let functions: [Smooth; 2] = [
-        Box::new(move |moment: Moment| -(wavenumber * moment.position).sin()),
-        Box::new(move |moment: Moment| -(wavenumber * moment.position).cos()),
+        Box::new(move |moment: Moment| -libm::sin(wavenumber * moment.position)),
+        Box::new(move |moment: Moment| -libm::cos(wavenumber * moment.position)),
     ];
     let columns = columns_of(paths, data.quantity, &functions, Acting::Torque);
     let mut columns = matrix(projection.rows(), &columns);

@@ -99,7 +99,7 @@ impl Readings {
             let gain = spread * self.observe.transpose() / variance;
             state += gain * off;
             spread -= gain * self.observe * spread;
-            logarithms += variance.ln();
+            logarithms += libm::log(variance);
             squares += off * off / variance;
             take(Estimate { before, before_spread, after: state, after_spread: spread });
             if let Some(step) = steps.next() {
@@ -110,7 +110,7 @@ impl Readings {
             }
         }
         let count = self.values.len() as f64;
-        -0.5 * (logarithms + count * (squares / count.max(1.0)).max(f64::MIN_POSITIVE).ln())
+        -0.5 * (logarithms + count * libm::log((squares / count.max(1.0)).max(f64::MIN_POSITIVE)))
     }
 
     /// Returns the smoothed states.

@@ -80,7 +80,7 @@ impl Bins {
             let omega = turn * bin as f64 / length;
             // The constant has no sine beside its cosine, and all of the power.
             let size = if bin == 0 { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
-            waves.extend(after.iter().map(|t| size * weight * (omega * (t + begin)).cos()));
+            waves.extend(after.iter().map(|t| size * weight * libm::cos(omega * (t + begin))));
             let band = ((2.0 * omega / frequency).round() as usize).min(BANDS - 1);
             bands.push(band);
             if let Some(slot) = driven.get_mut(band) {
@@ -164,7 +164,7 @@ impl Likelihood {
             }
             let mean = power / count;
             let variance = mean.max(self.noise + driven).max(f64::MIN_POSITIVE);
-            -0.5 * worth * (variance.ln() + mean / variance)
+            -0.5 * worth * (libm::log(variance) + mean / variance)
         };
         let segment = |&at: &usize| {
             let (powers, bins, worth) = (by_segment.get(at)?, self.bins.get(at)?, self.worth.get(at)?);

@@ -17,7 +17,7 @@ pub(crate) fn score_with(fit: &Fit, squares: f64, further: usize, autocorrelatio
     let samples = fit.samples() as f64;
     let worth = samples / autocorrelation_time;
     let mean = (squares / samples).max(f64::MIN_POSITIVE);
-    -0.5 * worth * mean.ln() - parameter_price(fit.globals() + further_starts(fit) + further, worth)
+    -0.5 * worth * libm::log(mean) - parameter_price(fit.globals() + further_starts(fit) + further, worth)
 }
 
 /// Returns the number of start values that a hypothesis has beyond those common to all.
@@ -28,14 +28,14 @@ pub(crate) fn further_starts(fit: &Fit) -> usize {
 
 /// Returns the price of parameters in nats, (p/2)·ln(worth); `worth` is the number of independent samples.
 pub(crate) fn parameter_price(parameters: usize, worth: f64) -> f64 {
-    0.5 * parameters as f64 * worth.max(2.0).ln()
+    0.5 * parameters as f64 * libm::log(worth.max(2.0))
 }
 
 /// Returns the sum of squares at which that many samples and parameters have a given [`score`].
 pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorrelation_time: f64) -> f64 {
     let samples = samples as f64;
     let worth = samples / autocorrelation_time;
-    samples * (-2.0 * (score + parameter_price(parameters, worth)) / worth).exp()
+    samples * libm::exp(-2.0 * (score + parameter_price(parameters, worth)) / worth)
 }
 
 /// A decaying swing of 1000 samples, and the recalibrated simulator fitted to it.
@@ -43,7 +43,7 @@ pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorr
 pub(crate) fn calibrated_swing() -> (crate::data::segments::Data, Fit) {
     use record::{Clock, ClockChoice, Quantity, Record};
     let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
-    let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
+    let values = times.iter().map(|time| 0.3 * libm::exp(-0.1 * time) * libm::cos(20.0 * time)).collect();
     let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
     let clock = Clock::new(&record, ClockChoice::Host).unwrap();
     let nominal = dynamics::Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();

@@ -105,9 +105,9 @@ impl<'a> Weighing<'a> {
 /// Sets the probabilities of sets, which come best first, so that they add up to 1.
 pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
     let Some(best) = weighed.first().map(|w| w.evidence) else { return };
-    let total: f64 = weighed.iter().map(|w| (w.evidence - best).exp()).sum();
+    let total: f64 = weighed.iter().map(|w| libm::exp(w.evidence - best)).sum();
     for w in weighed {
-        w.probability = (w.evidence - best).exp() / total;
+        w.probability = libm::exp(w.evidence - best) / total;
     }
 }
 
@@ -132,7 +132,7 @@ const SHAPE: f64 = 3.0;
 pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize, left_over: f64) -> f64 {
     let of = |own: &Candidate| {
         let shapes = own.parameters(&data.facts).iter().filter(|parameter| parameter.shape).count();
-        (vocabulary.max(2) as f64).ln()
+        libm::log(vocabulary.max(2) as f64)
             + SHAPE * shapes as f64
             + if own.is_flexible() { FLEXIBLE * left_over } else { 0.0 }
     };
@@ -141,13 +141,13 @@ pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize, left_over: f64) -
 
 /// Returns the probability that something without a name acts, from the log evidence for it.
 pub(crate) fn acts(evidence: f64) -> f64 {
-    1.0 / (1.0 + (-evidence).exp() / UNKNOWN_ODDS)
+    1.0 / (1.0 + libm::exp(-evidence) / UNKNOWN_ODDS)
 }
 
 /// Returns the probability that the verdict is `unknown`: the probability `acts` that something without a
 /// name acts, times a function of its share of the gap. The odds in that function are (share/0.03)^2.885.
 pub(crate) fn unknown(acts: f64, share: f64) -> f64 {
-    let odds = (share.max(0.0) / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
+    let odds = libm::pow(share.max(0.0) / UNKNOWN_SHARE, UNKNOWN_STEEPNESS);
     acts * odds / (1.0 + odds)
 }
 

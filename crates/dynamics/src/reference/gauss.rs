@@ -76,7 +76,7 @@ impl Gauss {
         let mut nodes = Vec::with_capacity(stages);
         let mut weights = Vec::with_capacity(stages);
         for i in 0..stages {
-            let mut x = -(std::f64::consts::PI * (i as f64 + 0.75) / (count + 0.5)).cos();
+            let mut x = -libm::cos(std::f64::consts::PI * (i as f64 + 0.75) / (count + 0.5));
             let mut slope = 1.0;
             for _ in 0..20 {
                 legendre(x, &mut values);

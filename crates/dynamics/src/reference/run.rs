@@ -236,7 +236,7 @@ impl<'a> Run<'a> {
             error = error.max(self.torque_tail(step) / relative);
         }
         let order = self.gauss.stages() as f64;
-        let factor = 0.9 * error.max(1e-300).powf(-1.0 / order);
+        let factor = 0.9 * libm::pow(error.max(1e-300), -1.0 / order);
         if error > 1.0 { factor.clamp(0.1, 0.9) } else { factor.clamp(1.0, 4.0) }
     }
 

@@ -84,15 +84,15 @@ impl Mul<f64> for Complex {
 
 impl Scalar for Complex {
     fn sin(self) -> Self {
-        Self { re: self.re.sin() * self.im.cosh(), im: self.re.cos() * self.im.sinh() }
+        Self { re: libm::sin(self.re) * libm::cosh(self.im), im: libm::cos(self.re) * libm::sinh(self.im) }
     }
 
     fn cos(self) -> Self {
-        Self { re: self.re.cos() * self.im.cosh(), im: -self.re.sin() * self.im.sinh() }
+        Self { re: libm::cos(self.re) * libm::cosh(self.im), im: -libm::sin(self.re) * libm::sinh(self.im) }
     }
 
     fn exp(self) -> Self {
-        let size = self.re.exp();
-        Self { re: size * self.im.cos(), im: size * self.im.sin() }
+        let size = libm::exp(self.re);
+        Self { re: size * libm::cos(self.im), im: size * libm::sin(self.im) }
     }
 }

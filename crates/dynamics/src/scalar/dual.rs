@@ -122,15 +122,15 @@ impl<const N: usize> Mul<f64> for Dual<N> {
 
 impl<const N: usize> Scalar for Dual<N> {
     fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
+        self.chain(libm::sin(self.value), libm::cos(self.value))
     }
 
     fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+        self.chain(libm::cos(self.value), -libm::sin(self.value))
     }
 
     fn exp(self) -> Self {
-        let value = self.value.exp();
+        let value = libm::exp(self.value);
         self.chain(value, value)
     }
 }

@@ -44,14 +44,14 @@ pub trait Scalar:
 
 impl Scalar for f64 {
     fn sin(self) -> Self {
-        self.sin()
+        libm::sin(self)
     }
 
     fn cos(self) -> Self {
-        self.cos()
+        libm::cos(self)
     }
 
     fn exp(self) -> Self {
-        self.exp()
+        libm::exp(self)
     }
 }

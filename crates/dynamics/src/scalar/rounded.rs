@@ -96,15 +96,15 @@ impl Mul<f64> for Rounded {
 
 impl Scalar for Rounded {
     fn sin(self) -> Self {
-        Self::new(self.value.sin(), self.value.cos().abs() * self.error)
+        Self::new(libm::sin(self.value), libm::cos(self.value).abs() * self.error)
     }
 
     fn cos(self) -> Self {
-        Self::new(self.value.cos(), self.value.sin().abs() * self.error)
+        Self::new(libm::cos(self.value), libm::sin(self.value).abs() * self.error)
     }
 
     fn exp(self) -> Self {
-        let value = self.value.exp();
+        let value = libm::exp(self.value);
         Self::new(value, value * self.error)
     }
 }

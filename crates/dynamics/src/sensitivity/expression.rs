@@ -198,21 +198,21 @@ impl Mul<f64> for Expression<'_> {
 impl Scalar for Expression<'_> {
     fn sin(self) -> Self {
         match self {
-            Self::Constant(value) => Self::Constant(value.sin()),
+            Self::Constant(value) => Self::Constant(libm::sin(value)),
             Self::Node { recorder, number } => recorder.circular(number).0,
         }
     }
 
     fn cos(self) -> Self {
         match self {
-            Self::Constant(value) => Self::Constant(value.cos()),
+            Self::Constant(value) => Self::Constant(libm::cos(value)),
             Self::Node { recorder, number } => recorder.circular(number).1,
         }
     }
 
     fn exp(self) -> Self {
         match self {
-            Self::Constant(value) => Self::Constant(value.exp()),
+            Self::Constant(value) => Self::Constant(libm::exp(value)),
             Self::Node { recorder, number } => recorder.node(Operation::Exponential(number)),
         }
     }

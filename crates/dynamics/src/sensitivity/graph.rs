@@ -157,9 +157,9 @@ impl Graph {
                 Operation::Divide(a, b) => of(a) / of(b),
                 Operation::Scale(a, factor) => of(a) * factor,
                 Operation::Offset(a, summand) => of(a) + summand,
-                Operation::Sine(a) => of(a).sin(),
-                Operation::Cosine(a) => of(a).cos(),
-                Operation::Exponential(a) => of(a).exp(),
+                Operation::Sine(a) => libm::sin(of(a)),
+                Operation::Cosine(a) => libm::cos(of(a)),
+                Operation::Exponential(a) => libm::exp(of(a)),
             };
             if let Some([slot, ..]) = self.series.get_mut(number) {
                 *slot = value;

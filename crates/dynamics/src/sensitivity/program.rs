@@ -173,7 +173,7 @@ impl Program {
                 }
                 Instruction::Circular { sine, cosine, a } => {
                     let (first, second) = if degree == 0 {
-                        coefficient(series, a, 0).sin_cos()
+                        libm::sincos(coefficient(series, a, 0))
                     } else {
                         (weighted(series, a, cosine, degree), -weighted(series, a, sine, degree))
                     };
@@ -182,7 +182,7 @@ impl Program {
                 }
                 Instruction::Exponential { target, a } => {
                     let value = if degree == 0 {
-                        coefficient(series, a, 0).exp()
+                        libm::exp(coefficient(series, a, 0))
                     } else {
                         weighted(series, a, target, degree)
                     };

@@ -138,7 +138,7 @@ impl Tails {
         let [last, second, third, fourth] = self.0;
         let root = |coefficient: f64, degree: usize| {
             if coefficient > 0.0 {
-                (tolerance / coefficient).powf(1.0 / degree as f64)
+                libm::pow(tolerance / coefficient, 1.0 / degree as f64)
             } else {
                 f64::INFINITY
             }

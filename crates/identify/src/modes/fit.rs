@@ -37,8 +37,8 @@ impl Line {
     }
 
     fn parts(self, time: f64) -> (f64, f64) {
-        let (sine, cosine) = (self.omega * time).sin_cos();
-        let size = (-self.decay * time).exp();
+        let (sine, cosine) = libm::sincos(self.omega * time);
+        let size = libm::exp(-self.decay * time);
         (size * cosine, size * sine)
     }
 }
@@ -57,7 +57,7 @@ pub(super) struct Fitted {
 
 impl Fitted {
     pub(super) fn amplitude(&self) -> f64 {
-        self.parts.0.hypot(self.parts.1)
+        libm::hypot(self.parts.0, self.parts.1)
     }
 
     pub(super) fn at(&self, time: f64) -> f64 {

@@ -54,8 +54,8 @@ impl Blocks {
         // Too few blocks have no poles: other first guesses remain.
         let poles = poles(&self.amplitudes, order);
         let line = |pole: &Complex<f64>| {
-            let logarithm = pole.ln() / self.width;
-            Line { omega: self.omega + logarithm.im, decay: -logarithm.re }
+            let (size, angle) = (libm::hypot(pole.re, pole.im), libm::atan2(pole.im, pole.re));
+            Line { omega: self.omega + angle / self.width, decay: -libm::log(size) / self.width }
         };
         let lines = poles.iter().flatten().filter(|pole| pole.norm() > 0.0).map(line);
         lines.filter(|line| line.omega > 0.0 && line.decay.is_finite()).map(Line::bounded).collect()

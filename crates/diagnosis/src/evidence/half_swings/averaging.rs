@@ -78,7 +78,7 @@ impl Restoring {
         };
         let work: f64 = (0..NODES)
             .map(|node| {
-                let (sine, cosine) = (step * (node as f64 + 0.5) - 0.5 * PI).sin_cos();
+                let (sine, cosine) = libm::sincos(step * (node as f64 + 0.5) - 0.5 * PI);
                 let moment = Moment {
                     time: 0.0,
                     position: amplitude * sine,

@@ -67,7 +67,7 @@ pub(crate) fn hypotheses(
 ) -> Vec<Hypothesis> {
     let scale = typical_variance(runs);
     let whitened: Vec<Whitened> = std::iter::once(0.0)
-        .chain(RATIOS.map(|power| 10_f64.powf(0.5 * f64::from(power))))
+        .chain(RATIOS.map(|power| libm::pow(10_f64, 0.5 * f64::from(power))))
         .filter_map(|ratio| whiten(runs, priors.len(), ratio, scale))
         .collect();
     let subsets = 0..1_usize << priors.len();
@@ -163,7 +163,7 @@ impl Banded {
     }
 
     fn log_determinant(&self) -> f64 {
-        2.0 * self.diagonal.iter().map(|entry| entry.ln()).sum::<f64>()
+        2.0 * self.diagonal.iter().map(|entry| libm::log(*entry)).sum::<f64>()
     }
 }
 
@@ -172,14 +172,14 @@ fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<
     let fits: Vec<(f64, Vec<f64>)> =
         whitened.iter().filter_map(|one| evidence(one, priors, &places)).collect();
     let (most, own) = fits.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let sum: f64 = fits.iter().map(|(log, ..)| (log - most).exp()).sum();
+    let sum: f64 = fits.iter().map(|(log, ..)| libm::exp(log - most)).sum();
     let mut coefficients = vec![0.0; acts.len()];
     for (place, estimate) in places.iter().zip(own) {
         coefficients[*place] = *estimate;
     }
     Some(Hypothesis {
         acts: acts.to_vec(),
-        evidence: most + (sum / whitened.len() as f64).ln(),
+        evidence: most + libm::log(sum / whitened.len() as f64),
         coefficients,
     })
 }
@@ -207,20 +207,20 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
             .diagonal()
             .iter()
             .zip(lengths.iter())
-            .map(|(l, length)| (l * length).ln())
+            .map(|(l, length)| libm::log(l * length))
             .sum::<f64>();
     let variance = squares / freedom;
     let mut log = -0.5 * (whitened.log_determinant + log_determinant) + ln_gamma(0.5 * freedom)
-        - 0.5 * freedom * (PI * squares).ln();
+        - 0.5 * freedom * libm::log(PI * squares);
     let mut estimates = Vec::with_capacity(terms);
     for (at, place) in places.iter().enumerate() {
         let value = solved[at] / lengths[at];
         let error = (variance * inverse[(at, at)]).sqrt() / lengths[at];
         log += match priors[*place] {
             Prior::Always => 0.0,
-            Prior::UpTo(most) => log_between(-value / error, (most - value) / error) - most.ln(),
+            Prior::UpTo(most) => log_between(-value / error, (most - value) / error) - libm::log(most),
             Prior::Within(most) => {
-                log_between((-most - value) / error, (most - value) / error) - (2.0 * most).ln()
+                log_between((-most - value) / error, (most - value) / error) - libm::log(2.0 * most)
             }
         };
         estimates.push(value);
@@ -239,9 +239,9 @@ fn log_between(low: f64, high: f64) -> f64 {
         (0.0, 0.0)
     };
     if near > 6.0 {
-        return -0.5 * near * near - (near * (2.0 * PI).sqrt()).ln();
+        return -0.5 * near * near - libm::log(near * (2.0 * PI).sqrt());
     }
     let below = |z: f64| Normal::standard().cdf(z);
     let between = if near > 0.0 { below(-near) - below(-far) } else { below(high) - below(low) };
-    between.max(f64::MIN_POSITIVE).ln()
+    libm::log(between.max(f64::MIN_POSITIVE))
 }

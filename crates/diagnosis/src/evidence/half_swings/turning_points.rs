@@ -96,7 +96,7 @@ pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequ
 fn sinusoid(points: &[(f64, f64)], frequency: f64) -> Option<(f64, [f64; 3])> {
     let count = points.len();
     let middle = points.iter().map(|point| point.1).sum::<f64>() / count as f64;
-    let row = |point: &(f64, f64)| [1.0, (frequency * point.0).cos(), (frequency * point.0).sin()];
+    let row = |point: &(f64, f64)| [1.0, libm::cos(frequency * point.0), libm::sin(frequency * point.0)];
     let design = DMatrix::from_row_iterator(count, 3, points.iter().flat_map(row));
     let values = DVector::from_iterator(count, points.iter().map(|point| point.1 - middle));
     let solved = design.tr_mul(&design).cholesky()?.solve(&design.tr_mul(&values));
@@ -130,11 +130,11 @@ fn first(samples: &Samples, angular_frequency: f64) -> Option<(f64, f64)> {
         }
         for step in 0..FREQUENCIES {
             let part = 2.0 * step as f64 / (FREQUENCIES - 1) as f64 - 1.0;
-            let frequency = angular_frequency * HINT.powf(part);
+            let frequency = angular_frequency * libm::pow(HINT, part);
             let Some((power, [_, cosine, sine])) = sinusoid(&thinned, frequency) else { continue };
             if best.is_none_or(|(most, ..)| power > most) {
                 // The extreme nearest to the middle of the stretch: a maximum or a minimum.
-                let phase = sine.atan2(cosine);
+                let phase = libm::atan2(sine, cosine);
                 let nearest = phase - PI * (phase / PI).round();
                 best = Some((power, middle + nearest / frequency, PI / frequency));
             }
@@ -203,7 +203,7 @@ fn local(samples: &Samples, expected: f64, half: f64, sign: Option<f64>) -> Opti
 /// Returns the terms of the local fit at a phase, or their first or second derivatives: a constant, a sine,
 /// and a parabola that is used if there are enough samples.
 fn terms(phase: f64, derivative: usize) -> [f64; 5] {
-    let (sine, cosine) = phase.sin_cos();
+    let (sine, cosine) = libm::sincos(phase);
     match derivative {
         0 => [1.0, cosine, sine, phase, phase * phase],
         1 => [0.0, -sine, cosine, 1.0, 2.0 * phase],

@@ -94,7 +94,7 @@ fn bending(displacement: f64, along: &Along<'_>) -> Vec<f64> {
     for (before, after) in position.iter().zip(position.iter().skip(1)) {
         let way = after - before;
         let direction = if way < 0.0 { -1.0 } else { 1.0 };
-        z = direction - (direction - z) * (-way.abs() / displacement).exp();
+        z = direction - (direction - z) * libm::exp(-way.abs() / displacement);
         torque.push(-z);
     }
     torque

@@ -14,13 +14,13 @@ pub(crate) struct Polar {
 impl Polar {
     /// Converts the fitted pair to size and angle; the other values are unchanged.
     pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
-        self.replaced(fitted, |p, q| (p.hypot(q), q.atan2(p)))
+        self.replaced(fitted, |p, q| (libm::hypot(p, q), libm::atan2(q, p)))
     }
 
     /// Converts size and angle to the fitted pair: the inverse of [`Self::values`].
     pub(crate) fn fitted(self, values: &[f64]) -> Vec<f64> {
         self.replaced(values, |length, turned| {
-            let (sine, cosine) = turned.sin_cos();
+            let (sine, cosine) = libm::sincos(turned);
             (length * cosine, length * sine)
         })
     }
@@ -30,7 +30,7 @@ impl Polar {
     pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
         let Self { size, angle } = self;
         let (p, q) = (fitted[size], fitted[angle]);
-        let length = p.hypot(q);
+        let length = libm::hypot(p, q);
         if length == 0.0 {
             return vec![(angle, angle, 0.0)];
         }
