@@ -21,7 +21,10 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     let decay = line.decay_rate;
     let stiffness = Estimated {
         value: damped * damped + decay * decay,
-        std_error: libm::hypot(2.0 * damped * damped * half_period.std_error / half_period.value, 2.0 * decay * line.std_error),
+        std_error: libm::hypot(
+            2.0 * damped * damped * half_period.std_error / half_period.value,
+            2.0 * decay * line.std_error,
+        ),
     };
     let rest = (order(record.quantity()) == 0).then(|| Estimated {
         value: extraction.offset,

@@ -214,8 +214,8 @@ fn condition_number(r: &[Vec<DoubleDouble>]) -> f64 {
                 }
                 largest = largest.max(cosine.abs());
                 let zeta = (bb - aa) / (2.0 * ab);
-                let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                let t = zeta.signum() / (zeta.abs() + libm::hypot(zeta, 1.0));
+                let c = 1.0 / libm::hypot(t, 1.0);
                 let s = c * t;
                 for (x, y) in a.iter_mut().zip(b.iter_mut()) {
                     (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
@@ -243,13 +243,13 @@ fn promise(
     let bound = 10.0 * size as f64 * UNIT_ROUNDOFF * (condition + condition * condition * tangent);
     let norm = scaled_coefficients.clone().map(|x| x * x).sum::<f64>().sqrt();
     if norm == 0.0 {
-        return (-bound.log10()).min(MOST_DIGITS);
+        return (-libm::log10(bound)).min(MOST_DIGITS);
     }
     let worst = scaled_coefficients
         .map(|x| bound * norm / x.abs())
         .filter(|relative| *relative < 1.0)
         .fold(bound, f64::max);
-    (-worst.log10()).min(MOST_DIGITS)
+    (-libm::log10(worst)).min(MOST_DIGITS)
 }
 
 #[cfg(test)]

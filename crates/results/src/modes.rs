@@ -50,7 +50,8 @@ impl Resonance {
         let quality = |ratio: f64| 0.5 / ratio;
         let [low, high] = damping_ratio.interval_95;
         let highest = if low > 0.0 || low.is_nan() { quality(low) } else { f64::INFINITY };
-        let error = 2.0 * (frequency * damping_ratio.std_error()).hypot(ratio * frequency_hz.std_error());
+        let error =
+            2.0 * libm::hypot(frequency * damping_ratio.std_error(), ratio * frequency_hz.std_error());
         Some(Self {
             quality_factor: WithInterval { value: quality(ratio), interval_95: [quality(high), highest] },
             half_power_width_hz: WithInterval::normal(2.0 * ratio * frequency, error),

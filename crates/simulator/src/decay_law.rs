@@ -81,23 +81,24 @@ impl DecayLaw {
         let half_periods = number as f64;
         let time = 0.5 * period_s * half_periods;
         match *self {
-            Self::Exponential { decay_rate } => initial * (-decay_rate * time).exp(),
+            Self::Exponential { decay_rate } => initial * libm::exp(-decay_rate * time),
             Self::CoulombViscous { decay_rate, dead_zone } => {
                 let exponent = 0.5 * decay_rate * period_s;
-                let ratio = (-exponent).exp();
+                let ratio = libm::exp(-exponent);
                 let decrement = dead_zone * (1.0 + ratio);
                 // (1 − ρⁿ)/(1 − ρ), which is n without viscous damping.
                 let sum = if exponent > 0.0 {
-                    (-exponent * half_periods).exp_m1() / (-exponent).exp_m1()
+                    libm::expm1(-exponent * half_periods) / libm::expm1(-exponent)
                 } else {
                     half_periods
                 };
-                initial * (-exponent * half_periods).exp() - decrement * sum
+                initial * libm::exp(-exponent * half_periods) - decrement * sum
             }
             Self::ViscousQuadratic { decay_rate, quadratic_rate } => {
                 // (exp(λt) − 1)/λ, which is t without viscous damping.
-                let growth = if decay_rate > 0.0 { (decay_rate * time).exp_m1() / decay_rate } else { time };
-                initial / ((decay_rate * time).exp() + quadratic_rate * initial * growth)
+                let growth =
+                    if decay_rate > 0.0 { libm::expm1(decay_rate * time) / decay_rate } else { time };
+                initial / (libm::exp(decay_rate * time) + quadratic_rate * initial * growth)
             }
         }
     }

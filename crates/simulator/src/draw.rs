@@ -93,7 +93,7 @@ impl Plan {
         };
         if let Some(count) = self.effects_per_system {
             present.sort_by(|one, other| {
-                let key = |planned: &PlannedEffect| chance(planned).ln() / planned.probability;
+                let key = |planned: &PlannedEffect| libm::log(chance(planned)) / planned.probability;
                 key(other).total_cmp(&key(one))
             });
             present.truncate(count);

@@ -104,7 +104,7 @@ impl EnvelopeTruth {
     /// Returns ln A of the noise-free peaks, with the amplitude in its own unit.
     #[must_use]
     pub fn log_amplitudes(&self) -> Vec<f64> {
-        self.amplitudes.iter().map(|amplitude| amplitude.ln()).collect()
+        self.amplitudes.iter().map(|amplitude| libm::log(*amplitude)).collect()
     }
 
     /// Draws the peaks with scatter from `seed`. An estimator gets nothing else.
@@ -119,8 +119,8 @@ impl EnvelopeTruth {
             .map(|amplitude| {
                 let normal: f64 = StandardNormal.sample(&mut generator);
                 match self.scatter {
-                    Scatter::Amplitude(size) => (amplitude + size * normal).ln(),
-                    Scatter::Logarithm(size) => amplitude.ln() + size * normal,
+                    Scatter::Amplitude(size) => libm::log(amplitude + size * normal),
+                    Scatter::Logarithm(size) => libm::log(*amplitude) + size * normal,
                 }
             })
             .collect();

@@ -46,7 +46,7 @@ impl Prior {
             Self::Fixed(value) => value,
             Self::Uniform { from, to } => from + generator.random::<f64>() * (to - from),
             Self::LogUniform { from, to } => {
-                (from.ln() + generator.random::<f64>() * (to / from).ln()).exp().clamp(from, to)
+                libm::exp(libm::log(from) + generator.random::<f64>() * libm::log(to / from)).clamp(from, to)
             }
             Self::Normal { mean, deviation } => (0..MOST_DRAWS)
                 .map(|_| mean + deviation * generator.sample::<f64, _>(StandardNormal))

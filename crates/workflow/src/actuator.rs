@@ -87,7 +87,7 @@ fn widen(result: &mut DiagnosisResult, command: Command, relative: f64) {
     let wider = |value: f64, interval: &mut [f64; 2]| {
         let own = value.abs() * relative;
         let [low, high] = *interval;
-        *interval = [value - (value - low).hypot(own), value + (high - value).hypot(own)];
+        *interval = [value - libm::hypot(value - low, own), value + libm::hypot(high - value, own)];
     };
     for parameter in result.effects.iter_mut().flat_map(|effect| effect.parameters.values_mut()) {
         if over_gain(&parameter.unit, command).is_some() {

@@ -147,7 +147,7 @@ fn digits(estimated: Estimated) -> String {
     let Estimated { value, std_error } = estimated;
     // At most eleven significant digits; ten if the standard error is zero or missing.
     let wanted = if std_error > 0.0 && value != 0.0 {
-        (value.abs().log10().floor() - std_error.log10().floor()).clamp(0.0, 9.0) as usize + 1
+        (libm::log10(value.abs()).floor() - libm::log10(std_error).floor()).clamp(0.0, 9.0) as usize + 1
     } else {
         9
     };

@@ -95,10 +95,10 @@ impl AnsweredRig {
 /// build has the class, or lacks it, the rigs' records are independent, so their contributions are summed and
 /// the prior is counted once: logit p = Σ logit pᵢ − (n − 1) logit p₀.
 fn combined(probabilities: &[f64]) -> f64 {
-    let logit = |p: f64| (p / (1.0 - p)).ln();
+    let logit = |p: f64| libm::log(p / (1.0 - p));
     let sum: f64 = probabilities.iter().map(|p| logit(p.clamp(LEAST, 1.0 - LEAST))).sum();
     let log_odds = sum - (probabilities.len() as f64 - 1.0) * logit(PRIOR);
-    1.0 / (1.0 + (-log_odds).exp())
+    1.0 / (1.0 + libm::exp(-log_odds))
 }
 
 /// Returns every class that some rig states, with its probability over all rigs and its coefficients; the

@@ -11,6 +11,7 @@ use crate::fit::fitted::{Fit, Point, first_starts};
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::significance::{OFF_BY_CHANCE, significant};
 use crate::fit::stopping::Stopping;
+use crate::matrices::product;
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::sets::shooting_interval::ShootingInterval;
@@ -204,7 +205,7 @@ fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
             change[(place + row, place + column)] = slope;
         }
     }
-    let covariance = &change * &fit.inverse * change.transpose() * fit.variance();
+    let covariance = product(&change, &product(&fit.inverse, &change.transpose())) * fit.variance();
     // Scaled to a unit diagonal before the inversion, because units differ by many orders of magnitude.
     let scale = covariance.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let at = |index: usize| scale.get(index).copied().unwrap_or(1.0);

@@ -3,6 +3,7 @@
 #![allow(clippy::indexing_slicing, reason = "matrices have a row and a column for every global parameter")]
 
 use crate::data::segments::Data;
+use crate::matrices::product;
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::Hypothesis;
 use crate::noise::statistics::autocorrelation_time;
@@ -82,7 +83,7 @@ impl Fit {
             change[(row, column)] = slope;
         }
         let own = DMatrix::from_fn(count, count, |i, j| self.inverse[(at + i, at + j)]);
-        let covariance = &change * own * change.transpose() * self.variance();
+        let covariance = product(&change, &product(&own, &change.transpose())) * self.variance();
         covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
     }
 

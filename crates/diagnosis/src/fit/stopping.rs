@@ -177,7 +177,9 @@ impl Ending {
         let (_, last) = self.gains.split_at(self.gains.len().saturating_sub(LOOKED_AT));
         let best = last.iter().copied().fold(0.0, f64::max);
         let left = self.effort.steps.saturating_sub(steps) as f64;
-        steps >= FEWEST && last.len() == LOOKED_AT && squares * libm::pow(1.0 - best, left) > self.effort.below
+        steps >= FEWEST
+            && last.len() == LOOKED_AT
+            && squares * libm::pow(1.0 - best, left) > self.effort.below
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::data::segments::Data;
 use crate::fit::fitted::{Fit, Point};
+use crate::matrices::product;
 use crate::model::hypothesis::Hypothesis;
 use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::DynamicsError;
@@ -72,11 +73,11 @@ impl Projection {
         for (at, basis) in &self.segments {
             let mut rows = columns.rows_mut(*at, basis.nrows());
             let overlap = basis.tr_mul(&rows);
-            rows -= basis * overlap;
+            rows -= product(basis, &overlap);
         }
         if self.globals.ncols() > 0 {
             let overlap = self.globals.tr_mul(columns);
-            *columns -= &self.globals * overlap;
+            *columns -= product(&self.globals, &overlap);
         }
     }
 

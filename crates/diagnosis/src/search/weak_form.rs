@@ -14,7 +14,7 @@ use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::Fit;
 use crate::linear::dictionary::{Dictionary, Gain};
-use crate::matrices::solve;
+use crate::matrices::{product, solve};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::{Along, driven};
 use crate::model::hypothesis::{Calibrated, Hypothesis};
@@ -353,7 +353,7 @@ impl Rows {
         let laws = DMatrix::from_row_slice(rows, width, &laws);
         let products = oscillator.tr_mul(&oscillator);
         let without = |columns: &DMatrix<f64>| {
-            Some(columns - &oscillator * solve(&products, &oscillator.tr_mul(columns))?)
+            Some(columns - product(&oscillator, &solve(&products, &oscillator.tr_mul(columns))?))
         };
         let (columns, residual) = (without(&laws)?, without(&torque)?);
         let dictionary = Dictionary::of_columns(entries, &self.counts, &laws, columns, &residual);

@@ -95,7 +95,7 @@ impl Fit {
         });
         let inner = gram.view((0, 0), (last, last)).into_owned();
         let target = gram.view((0, last), (last, 1)).column(0).into_owned();
-        let normal = design.tr_mul(&(&inner * &design));
+        let normal = design.tr_mul(&inner.tr_mul(&design));
         let solution = solve(&normal, &design.tr_mul(&target))?;
         let whole = &design * &solution;
         let power = gram.get((last, last)).copied()?;
@@ -118,7 +118,7 @@ impl Fit {
             let energy = parts.dot(&(block * parts));
             fitted.push(Fitted { line: *line, parts: (cosine, sine), energy, variances: [f64::INFINITY; 3] });
         }
-        let normal = full.tr_mul(&(&inner * &full));
+        let normal = full.tr_mul(&inner.tr_mul(&full));
         let slope = full.tr_mul(&(target - inner * &whole));
         let trend = [part(0)?, part(1)?, part(2)?];
         let count = samples.times.len();

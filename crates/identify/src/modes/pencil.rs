@@ -81,6 +81,8 @@ fn poles(amplitudes: &[Complex<f64>], order: usize) -> Option<Vec<Complex<f64>>>
     let shifted: Matrix2<Complex<f64>> = shifted.fixed_view::<2, 2>(0, 0).into_owned();
     let shift = square.try_inverse()? * shifted;
     let (half, product) = (shift.trace() * 0.5, shift.determinant());
-    let root = (half * half - product).sqrt();
+    let square = half * half - product;
+    let (size, angle) = (libm::hypot(square.re, square.im).sqrt(), 0.5 * libm::atan2(square.im, square.re));
+    let root = Complex::new(size * libm::cos(angle), size * libm::sin(angle));
     Some(vec![half + root, half - root])
 }

@@ -75,7 +75,7 @@ pub fn descend(envelope: &Envelope, steps: u64) -> ClassicalFit {
 /// Returns the larger eigenvalue of [[mean square, mean], [mean, 1]].
 fn largest_eigenvalue(mean: f64, mean_square: f64) -> f64 {
     let half = f64::midpoint(mean_square, 1.0);
-    half + ((mean_square - 1.0) / 2.0).hypot(mean)
+    half + libm::hypot((mean_square - 1.0) / 2.0, mean)
 }
 
 /// Returns the largest |cos| of the angles that the residuals make with the constant and with t, without the

@@ -62,8 +62,8 @@ fn rotation(a: &[f64], b: &[f64], tolerance: f64) -> Option<(f64, f64)> {
         return None;
     }
     let zeta = (bb - aa) / (2.0 * ab);
-    let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-    let cosine = 1.0 / tangent.hypot(1.0);
+    let tangent = zeta.signum() / (zeta.abs() + libm::hypot(zeta, 1.0));
+    let cosine = 1.0 / libm::hypot(tangent, 1.0);
     Some((cosine, cosine * tangent))
 }
 

@@ -202,7 +202,7 @@ fn promise(scaled: &[f64], bounds: impl Iterator<Item = f64>) -> f64 {
             if alone < 1.0 { alone.max(together) } else { together }
         })
         .fold(UNIT_ROUNDOFF, |worst, share| if share.is_nan() { share } else { worst.max(share) });
-    (-worst.log10()).min(MOST_DIGITS)
+    (-libm::log10(worst)).min(MOST_DIGITS)
 }
 
 /// Fits the line of an envelope by a linear route.

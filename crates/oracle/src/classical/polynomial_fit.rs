@@ -83,7 +83,7 @@ fn rotate_rows(columns: &[Vec<f64>], y: &[f64]) -> (Triangle, Vec<f64>) {
             let (Some(&pivot), Some(&head)) = (row.first(), rest.first()) else { break };
             shrunk = rest.to_vec();
             if head != 0.0 {
-                let size = pivot.hypot(head);
+                let size = libm::hypot(pivot, head);
                 let (cosine, sine) = (pivot / size, head / size);
                 for (upper, lower) in row.iter_mut().zip(&mut shrunk) {
                     (*upper, *lower) = (cosine * *upper + sine * *lower, cosine * *lower - sine * *upper);

@@ -50,8 +50,8 @@ pub(super) fn changing(envelope: &Envelope) -> Vec<String> {
 fn apart(first: Option<[f64; 2]>, last: Option<[f64; 2]>, part: f64) -> Option<[String; 2]> {
     let ([first, first_error], [last, last_error]) = first.zip(last)?;
     let difference = (last - first).abs();
-    let is_far =
-        difference > APART * first_error.hypot(last_error) && difference > part * first.abs().min(last.abs());
+    let is_far = difference > APART * libm::hypot(first_error, last_error)
+        && difference > part * first.abs().min(last.abs());
     is_far.then(|| [with_uncertainty(first, first_error), with_uncertainty(last, last_error)])
 }
 

@@ -69,7 +69,7 @@ impl CandidateLaw for SensorNonlinearity {
 
     fn columns(&self, _shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         let x = along.observed;
-        vec![x.iter().map(|x| x.sin()).collect(), x.iter().map(|x| x.cos()).collect()]
+        vec![x.iter().map(|x| libm::sin(*x)).collect(), x.iter().map(|x| libm::cos(*x)).collect()]
     }
 
     fn read(&self, values: &[f64], sensor: &mut Sensor) {
