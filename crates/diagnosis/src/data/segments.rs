@@ -11,6 +11,7 @@ use crate::data::observations::Observations;
 use crate::data::pieces::{Piece, pieces};
 use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
+use crate::matrices::solve;
 use crate::noise::periodogram::{dominant_frequency, share};
 use crate::noise::statistics::{duration, median, quantile};
 use dynamics::{Hold, Input, Nominal, NominalSimulator};
@@ -434,9 +435,9 @@ fn wave(points: &[(f64, f64)], omega: Option<f64>) -> ([f64; 3], f64) {
     };
     let rows = points.iter().flat_map(|(time, _)| columns(*time));
     let design = nalgebra::DMatrix::from_row_iterator(points.len(), 3, rows);
-    let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));
-    let svd = design.clone().svd(true, true);
-    let fit = svd.solve(&right, 1e-12).unwrap_or_else(|_| nalgebra::DVector::zeros(3));
+    let right = nalgebra::DMatrix::from_iterator(points.len(), 1, points.iter().map(|(_, value)| *value));
+    let fit = solve(&design.tr_mul(&design), &design.tr_mul(&right));
+    let fit = fit.unwrap_or_else(|| nalgebra::DMatrix::zeros(3, 1));
     ([0, 1, 2].map(|index| fit[index]), (right - design * fit).norm_squared())
 }
 
