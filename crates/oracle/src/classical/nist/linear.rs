@@ -133,8 +133,8 @@ fn promises_are_kept_on_random_problems() {
     for number in 0..2000 {
         let rows = generator.random_range(3..200_usize);
         let count = generator.random_range(1..=(rows - 1).min(6));
-        let apart = libm::pow(10_f64, -generator.random_range(0.0..5.0));
-        let noise = libm::pow(10_f64, generator.random_range(-8.0..2.0));
+        let apart = 10_f64.powf(-generator.random_range(0.0..5.0));
+        let noise = 10_f64.powf(generator.random_range(-8.0..2.0));
         let common: Vec<f64> = (0..rows).map(|_| generator.random()).collect();
         let mut around = |centers: &[f64], width: f64| -> Vec<f64> {
             centers.iter().map(|center| center + width * (generator.random::<f64>() - 0.5)).collect()

@@ -10,7 +10,7 @@ mod nonlinear_sets;
 /// if the certified value is 0.
 fn digits(found: f64, certified: f64) -> f64 {
     let error = (found - certified).abs() / if certified == 0.0 { 1.0 } else { certified.abs() };
-    if error == 0.0 { 16.0 } else { -libm::log10(error) }
+    if error == 0.0 { 16.0 } else { -error.log10() }
 }
 
 /// Returns the smallest number of correct digits among several numbers.

@@ -123,11 +123,8 @@ fn whatever_is_called_converged_is_stationary() {
     let mut generator = seed::Seed::new(0).child("starts").generator();
     for set in sets() {
         for _ in 0..10 {
-            let start: Vec<f64> = set
-                .certified
-                .iter()
-                .map(|b| b * libm::pow(10_f64, generator.random_range(-1.0..1.0)))
-                .collect();
+            let start: Vec<f64> =
+                set.certified.iter().map(|b| b * 10_f64.powf(generator.random_range(-1.0..1.0))).collect();
             if !set.residuals(&start).iter().all(|r| r.is_finite()) {
                 continue;
             }

@@ -285,7 +285,7 @@ fn nelson() -> NonlinearSet {
         name: "Nelson",
         model: degradation,
         predictors: design.map(|point| point.to_vec()).collect(),
-        y: data::NELSON_Y.iter().map(|y| libm::log(y)).collect(),
+        y: data::NELSON_Y.iter().map(|y| y.ln()).collect(),
         starts: [&[2.0, 1e-4, -0.01], &[2.5, 5e-9, -0.05]],
         certified: &[2.590_683_602_1E+00, 5.617_771_702_6E-09, -5.770_101_317_4E-02],
         sum_of_squares: 3.797_683_317_6E+00,
@@ -294,7 +294,7 @@ fn nelson() -> NonlinearSet {
 }
 
 fn misra_1a(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let e = libm::exp(-b[1] * x[0]);
+    let e = (-b[1] * x[0]).exp();
     (b[0] * (1.0 - e), vec![1.0 - e, b[0] * x[0] * e])
 }
 
@@ -305,17 +305,17 @@ fn misra_1b(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
 }
 
 fn chwirut(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let (e, q) = (libm::exp(-b[0] * x[0]), b[1] + b[2] * x[0]);
+    let (e, q) = ((-b[0] * x[0]).exp(), b[1] + b[2] * x[0]);
     (e / q, vec![-x[0] * e / q, -e / (q * q), -x[0] * e / (q * q)])
 }
 
 fn power_law(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let power = libm::pow(x[0], b[1]);
+    let power = x[0].powf(b[1]);
     (b[0] * power, vec![power, b[0] * power * x[0].ln()])
 }
 
 fn three_exponentials(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let terms = [0, 2, 4].map(|at| (b[at], libm::exp(-b[at + 1] * x[0])));
+    let terms = [0, 2, 4].map(|at| (b[at], (-b[at + 1] * x[0]).exp()));
     (
         terms.iter().map(|(factor, e)| factor * e).sum(),
         terms.iter().flat_map(|(factor, e)| [*e, -factor * x[0] * e]).collect(),
@@ -323,12 +323,12 @@ fn three_exponentials(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
 }
 
 fn gaussians(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let e = libm::exp(-b[1] * x[0]);
+    let e = (-b[1] * x[0]).exp();
     let mut value = b[0] * e;
     let mut slopes = vec![e, -b[0] * x[0] * e];
     for peak in [&b[2..5], &b[5..8]] {
         let distance = (x[0] - peak[1]) / peak[2];
-        let bell = libm::exp(-distance * distance);
+        let bell = (-distance * distance).exp();
         value += peak[0] * bell;
         let side = peak[0] * bell * 2.0 * distance / peak[2];
         slopes.extend([bell, side, side * distance]);
@@ -337,12 +337,12 @@ fn gaussians(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
 }
 
 fn two_exponentials(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let (one, two) = (libm::exp(-b[3] * x[0]), libm::exp(-b[4] * x[0]));
+    let (one, two) = ((-b[3] * x[0]).exp(), (-b[4] * x[0]).exp());
     (b[0] + b[1] * one + b[2] * two, vec![1.0, one, two, -x[0] * b[1] * one, -x[0] * b[2] * two])
 }
 
 fn degradation(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let e = libm::exp(-b[2] * x[1]);
+    let e = (-b[2] * x[1]).exp();
     (b[0] - b[1] * x[0] * e, vec![1.0, -x[0] * e, b[1] * x[0] * x[1] * e])
 }
 
@@ -363,27 +363,27 @@ fn cubic_ratio(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
 }
 
 fn logistic(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let e = libm::exp(b[1] - b[2] * x[0]);
+    let e = (b[1] - b[2] * x[0]).exp();
     let slope = -b[0] * e / ((1.0 + e) * (1.0 + e));
     (b[0] / (1.0 + e), vec![1.0 / (1.0 + e), slope, -slope * x[0]])
 }
 
 fn meyer(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
     let q = 1.0 / (x[0] + b[2]);
-    let e = libm::exp(b[1] * q);
+    let e = (b[1] * q).exp();
     (b[0] * e, vec![e, b[0] * q * e, -b[0] * b[1] * q * q * e])
 }
 
 fn line_shape(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
     let distance = (x[0] - b[2]) / b[1];
-    let bell = libm::exp(-0.5 * distance * distance) / b[1];
+    let bell = (-0.5 * distance * distance).exp() / b[1];
     let value = b[0] * bell;
     (value, vec![bell, value * (distance * distance - 1.0) / b[1], value * distance / b[1]])
 }
 
 fn richards(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
-    let e = libm::exp(b[1] - b[2] * x[0]);
-    let power = libm::pow(1.0 + e, -1.0 / b[3]);
+    let e = (b[1] - b[2] * x[0]).exp();
+    let power = (1.0 + e).powf(-1.0 / b[3]);
     let slope = -b[0] * power * e / ((1.0 + e) * b[3]);
     (b[0] * power, vec![power, slope, -slope * x[0], b[0] * power * e.ln_1p() / (b[3] * b[3])])
 }
