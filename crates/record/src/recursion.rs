@@ -16,11 +16,15 @@ const FEWEST: usize = 40;
 /// 1.2 to 2.0 for simulated decays of one to three modes, dry friction and noise of up to 3 % of the amplitude; 2.8 and
 /// more where a hand lifts, holds, strikes or stops.
 const EVEN: f64 = 2.2;
-/// The same ratio, and the part of the range that a residual has to be as well, from which something moved the system.
+/// The same ratio, and the part of the range that a residual has to be as well, from which something moved the system; and the
+/// ratio from which it did so if the motion grows much.
 const STRUCK: f64 = 8.0;
 const SEEN: f64 = 0.02;
-/// Growth of the motion at a strike, the part of it that a stop leaves, and the parts before and after in which that is seen.
+const FAINT: f64 = 4.0;
+/// Growth of the motion at a strike, of a faint one, the part of it that a stop leaves, and the parts before and after in which
+/// that is seen.
 const GROWS: f64 = 1.3;
+const GROWS_MUCH: f64 = 2.5;
 const STOPS: f64 = 0.1;
 const AROUND: usize = 4;
 /// Samples from one value of the recursion to the next, from which three neighbors are nearly equal.
@@ -45,17 +49,15 @@ pub(crate) fn is_one_motion(values: &[f64], half_swing: f64) -> bool {
 /// told from the motion.
 pub(crate) fn between_strikes(values: &[f64], half_swing: f64) -> Vec<[usize; 2]> {
     let step = step(half_swing);
-    if step < DENSE {
-        return Vec::new();
-    }
-    // Of three neighbors the middle value: a single wrong one moves nothing.
-    let near = |at: usize| values.get(at.saturating_sub(1)..values.len().min(at + 2));
+    // Of three neighbors the middle value, where they are nearly equal: a single wrong one moves nothing.
+    let beside = usize::from(step >= DENSE);
+    let near = |at: usize| values.get(at.saturating_sub(beside)..values.len().min(at + beside + 1));
     let series = (0..values.len()).step_by(step);
     let series: Vec<f64> = series.filter_map(|at| upper_median(near(at)?.to_vec())).collect();
     let Some(found) = residuals(&series) else { return Vec::new() };
     let Some(usual) = upper_median(found.parts.clone()) else { return Vec::new() };
     let [lowest, highest] = extremes(&series);
-    let least = (STRUCK * usual).max(SEEN * (highest - lowest));
+    let least = |ratio: f64| (ratio * usual).max(SEEN * (highest - lowest));
     let order = found.order;
     // What a hand moves slowly hardly counts among velocities.
     let velocities: Vec<f64> =
@@ -65,17 +67,18 @@ pub(crate) fn between_strikes(values: &[f64], half_swing: f64) -> Vec<[usize; 2]
         deviation(part)
     };
     // A sample is predicted by those of the part before, so that a strike also shows in the part after it.
-    let large: Vec<bool> = found.parts.iter().map(|part| *part > least).collect();
-    let runs = large.chunk_by(|one, next| one == next).scan(0, |part, run| {
+    let is_large = |part: &f64| *part > least(FAINT);
+    let runs = found.parts.chunk_by(|one, next| is_large(one) == is_large(next)).scan(0, |part, run| {
         let from = *part;
         *part += run.len();
-        Some((run.first() == Some(&true), (from + 1) * order, (*part + 1) * order))
+        Some((extremes(run)[1], (from + 1) * order, (*part + 1) * order))
     });
     let strikes: Vec<[usize; 2]> = runs
-        .filter(|&(is_large, from, to)| {
+        .filter(|&(largest, from, to)| {
             let before = energy(from.saturating_sub(AROUND * order), from);
             let after = energy(to, to + AROUND * order);
-            is_large && (after > GROWS * before || after < STOPS * before)
+            let is_clear = largest > least(STRUCK) && (after > GROWS * before || after < STOPS * before);
+            is_clear || largest > least(FAINT) && after > GROWS_MUCH * before
         })
         .map(|(_, from, to)| [from * step, to * step])
         .collect();
@@ -177,16 +180,22 @@ mod tests {
             let mode = |omega: f64, zeta: f64| (-zeta * omega * time).exp() * (omega * time).sin();
             if time < 0.0 { 0.0 } else { mode(56.5, 0.008) + 0.6 * mode(89.2, 0.006) }
         };
-        let mut draws = rand_chacha::ChaCha8Rng::seed_from_u64(9);
-        let mut value = |time: f64| {
-            let draw: f64 = StandardNormal.sample(&mut draws);
-            ring(time - 0.5) + ring(time - 7.0) + 1e-3 * draw
-        };
-        let values: Vec<f64> = (0..7000).map(|at| value(0.002 * f64::from(at))).collect();
-        let pieces = between_strikes(&values, 25.0);
-        assert_eq!(pieces.len(), 3, "{pieces:?}");
-        for ([from, _], strike) in pieces[1..].iter().zip([250, 3500]) {
-            assert!((strike..strike + 60).contains(from), "{pieces:?}");
+        // Also with a few samples a half swing, and in noise of a fortieth of the motion.
+        for (interval, noise) in [(0.002, 1e-3), (0.009, 1e-3), (0.002, 0.04)] {
+            let mut draws = rand_chacha::ChaCha8Rng::seed_from_u64(9);
+            let mut value = |at: usize| {
+                let (time, draw): (f64, f64) = (interval * at as f64, StandardNormal.sample(&mut draws));
+                ring(time - 0.5) + ring(time - 7.0) + noise * draw
+            };
+            let mut values: Vec<f64> = (0..(14.0 / interval) as usize).map(&mut value).collect();
+            // One wrong value is no strike.
+            values[(4.0 / interval) as usize] = 2.0;
+            let pieces = between_strikes(&values, 0.05 / interval);
+            assert_eq!(pieces.len(), 3, "{interval} {noise} {pieces:?}");
+            for ([from, _], strike) in pieces[1..].iter().zip([0.5, 7.0]) {
+                let late = *from as f64 * interval - strike;
+                assert!((0.0..0.25).contains(&late), "{interval} {noise} {late}");
+            }
         }
         let stopped = |time: f64| decay(time, 6.0).clamp(-0.8, 2.0);
         let values: Vec<f64> = (0..3000).map(|at| stopped(0.01 * f64::from(at))).collect();
