@@ -1,6 +1,5 @@
 // The answer: the report, everything to take along, and the command that gives the same.
 import { $, fill, make, save } from "./dom.js";
-import { nominal } from "./nominal.js";
 import { word, words } from "./options.js";
 import { zip } from "./zip.js";
 
@@ -23,7 +22,7 @@ export const answered = (answer, logs, options) => {
   const files = Object.keys(MEANING).map((name) => answer.files.find((file) => file.name === name)).filter(Boolean);
   const each = files.map(({ name, text }) => make("li", {},
     make("button", { type: "button", class: "link", onclick: () => save(name, [text]) }, name), ` ${MEANING[name]}`));
-  const command = ["trainer diagnose", ...logs.map((log) => word(log.name)), `--nominal ${word(nominal.name)}`, ...words(options)].join(" ");
+  const command = ["trainer diagnose", ...logs.map((log) => word(log.name)), "--nominal nominal.toml", ...words(options)].join(" ");
   fill($("take"),
     make("p", { class: "sentence" }, answer.summary),
     make("p", { class: "buttons" },
@@ -32,7 +31,7 @@ export const answered = (answer, logs, options) => {
       make("button", { type: "button", class: "button", onclick: () => save("diagnosis.zip", [zip(files)], "application/zip") }, "Save all (ZIP)")),
     make("details", {}, make("summary", {}, "Files, one by one"), make("ul", { class: "files" }, ...each)),
     make("details", {}, make("summary", {}, "The same on the command line"),
-      make("p", { class: "note" }, `With ${nominal.name} of “Files, one by one”, saved as nominal.toml, beside the log:`),
+      make("p", { class: "note" }, "With nominal.toml of “Files, one by one” beside the log:"),
       make("pre", { tabindex: "0", id: "command" }, command)));
   $("answer").hidden = false;
   show(files.find((file) => file.name === "report.html").text);
@@ -52,7 +51,8 @@ const show = (html) => {
     // The body's own height: that of the document is never less than the frame's, which would then never shrink.
     const fit = () => {
       const below = parseFloat(frame.contentWindow.getComputedStyle(report.body).marginBottom);
-      frame.style.height = `${Math.ceil(report.body.getBoundingClientRect().bottom + frame.contentWindow.scrollY + below)}px`;
+      const border = frame.offsetHeight - frame.clientHeight;
+      frame.style.height = `${Math.ceil(report.body.getBoundingClientRect().bottom + frame.contentWindow.scrollY + below) + border}px`;
     };
     new frame.contentWindow.ResizeObserver(fit).observe(report.body);
     fit();

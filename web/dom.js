@@ -14,7 +14,7 @@ export const make = (name, attributes = {}, ...children) => {
 
 // A table that scrolls in itself where it is too wide; the first cell of a row names it. `of` is what it
 // belongs to.
-export const table = (caption, heads, rows, of) => make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${caption}: ${of}` },
+export const table = (caption, heads, rows, of) => make("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": `${caption}: ${of}` },
   make("table", {},
     make("caption", {}, caption),
     make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, head)))),
@@ -38,3 +38,6 @@ export const save = (name, parts, type = "text/plain") => {
   link.click();
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 };
+
+// A number as it is typed, with a decimal point or comma.
+export const number = (text) => Number(text.trim().replace(",", "."));

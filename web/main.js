@@ -85,7 +85,8 @@ const look = async () => {
     offerOptions(found);
     $("log").hidden = false;
     const readable = found.filter((log) => !log.error);
-    $("reading").open = readable.length < found.length;
+    // What was set stays in sight.
+    $("reading").open = readable.length < found.length || Object.keys(options()).length > 0;
     // Only a free decay has an envelope.
     $("estimate").hidden = readable.every((log) => log.found.oscillator.input_gain_per_inertia);
     $("simulator").hidden = readable.length < found.length;

@@ -1,5 +1,5 @@
 // The simulator as it is: guessed, by numbers, or from a file.
-import { $, fill, make } from "./dom.js";
+import { $, fill, make, number } from "./dom.js";
 
 const box = () => $("nominal");
 
@@ -32,12 +32,12 @@ export const offerNominal = (logs, simulator) => {
 const FORMS = {
   swings: {
     title: "natural frequency and damping ratio",
-    fields: [["natural_frequency", "natural frequency, Hz", "3.5"], ["damping_ratio", "damping ratio", "0.01"]],
+    fields: [["natural_frequency", "natural frequency, Hz"], ["damping_ratio", "damping ratio"]],
   },
   coefficients: {
     title: "inertia, damping, stiffness",
-    fields: [["inertia", "inertia, kg m² (or mass, kg)", "0.001"], ["damping", "damping, N m s/rad (or N s/m)", "0.0002"],
-      ["stiffness", "stiffness, N m/rad (or N/m)", "0.2"]],
+    fields: [["inertia", "inertia, kg m² (or mass, kg)"], ["damping", "damping, N m s/rad (or N s/m)"],
+      ["stiffness", "stiffness, N m/rad (or N/m)"]],
   },
 };
 
@@ -52,6 +52,15 @@ const kinds = (kind) => {
   fill($("nominal-form"));
 };
 
+// The numbers of the guess in other words; per unit of inertia if it states none.
+const ofGuess = (known) => {
+  const inertia = known("inertia") ?? 1, omega = 2 * Math.PI * (known("natural_frequency") ?? 0);
+  const damping = known("damping") ?? 2 * (known("damping_ratio") ?? 0) * omega * inertia;
+  const stiffness = known("stiffness") ?? omega * omega * inertia;
+  const numbers = { inertia, damping, stiffness, natural_frequency: omega / (2 * Math.PI), damping_ratio: known("damping_ratio") ?? 0 };
+  return Object.fromEntries(Object.entries(numbers).map(([key, value]) => [key, Number(Number(value).toPrecision(6))]));
+};
+
 const choose = (kind) => {
   nominal.name = kind === "file" ? file.name : "nominal.toml";
   if (kind === "guess") box().value = guess;
@@ -61,11 +70,13 @@ const choose = (kind) => {
   const known = (key) => guess.match(new RegExp(`^${key} = ([-+.\\deE]+)`, "m"))?.[1];
   const write = () => {
     const coordinate = guess.match(/^coordinate = .*?"\s/m)?.[0].trim() ?? 'coordinate = "angle"';
-    const numbers = form.fields.map(([key]) => `${key} = ${Number($(`nominal-${key}`).value)}`);
-    box().value = [coordinate, ...numbers, `rest_angle = ${known("rest_angle") ?? 0}`].join("\n") + "\n";
+    const numbers = form.fields.map(([key]) => `${key} = ${number($(`nominal-${key}`).value)}`);
+    const kept = ["rest_angle", "input_gain"].filter((key) => known(key)).map((key) => `${key} = ${known(key)}`);
+    box().value = [coordinate, ...numbers, ...kept].join("\n") + "\n";
   };
+  const usual = ofGuess(known);
   fill($("nominal-form"), make("div", { class: "grid" }, ...form.fields.map(([key, label, usual]) =>
     make("div", { class: "field" }, make("label", { for: `nominal-${key}` }, label),
-      make("input", { id: `nominal-${key}`, type: "number", step: "any", value: known(key) ?? usual, oninput: write })))));
+      make("input", { id: `nominal-${key}`, type: "text", inputmode: "decimal", autocomplete: "off", value: known(key) ?? usual[key], oninput: write })))));
   write();
 };

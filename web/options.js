@@ -1,5 +1,5 @@
 // The form of reading options, made from the keys that the program declares.
-import { $, fill, make } from "./dom.js";
+import { $, fill, make, number } from "./dom.js";
 
 let fields = [];
 
@@ -16,7 +16,7 @@ const control = (field, titles, value) => {
     input = make("select", attributes, make("option", { value: "" }, "as found"),
       ...field.choices.map((choice) => make("option", { value: choice, selected: choice === value }, choice)));
   } else if (field.kind === "number") {
-    input = make("input", { ...attributes, type: "number", step: "any", value: value ?? "" });
+    input = make("input", { ...attributes, type: "text", inputmode: "decimal", autocomplete: "off", value: value ?? "" });
   } else {
     input = make("input", { ...attributes, type: "text", value: value ?? "", list: field.column ? "titles" : null, autocomplete: "off" });
   }
@@ -41,7 +41,7 @@ export const options = () => {
     const input = $(`option-${field.key}`);
     if (!input) continue;
     if (field.kind === "flag") { if (input.checked) chosen[field.key] = true; }
-    else if (input.value !== "") chosen[field.key] = field.kind === "number" ? Number(input.value) : input.value;
+    else if (input.value !== "") chosen[field.key] = field.kind === "number" ? number(input.value) : input.value;
   }
   return chosen;
 };

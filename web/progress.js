@@ -44,7 +44,7 @@ export class Progress {
     const next = Math.min(...Object.values(PASSED).filter((part) => part > this.#passed), 1);
     const part = known ? Math.min(next, (this.#passed * seconds) / this.#since) : this.#passed;
     const left = known && part < next ? this.#since / this.#passed - seconds : null;
-    const told = left === null ? "" : `, about ${Math.ceil(left)} s left`;
+    const told = left !== null ? `, about ${Math.ceil(left)} s left` : known ? ", longer than usual" : "";
     this.#shown = Math.max(this.#shown, part);
     $("bar").value = this.#shown;
     $("stage").textContent = `${this.#stage}, ${seconds.toFixed(0)} s${told}`;

@@ -12,6 +12,7 @@ use crate::{Basis, Estimated, LinearOscillator};
 use least_squares::{Descent, Method};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use record::{Clock, Record, noise_level};
+use std::f64::consts::PI;
 
 /// Number of the fitted numbers.
 const COUNT: usize = 6;
@@ -115,12 +116,15 @@ pub(crate) fn returning<'a>(
     clock: &Clock,
     guesses: impl IntoIterator<Item = &'a LinearOscillator>,
 ) -> Option<LinearOscillator> {
+    // Samples tell no frequency from its image beyond half their rate.
+    let highest = PI * clock.sample_rate_hz;
     let creeping = CREEPING.map(|omega| omega / clock.duration_s()).map(|omega| [omega * omega, 2.0 * omega]);
     let guesses = guesses.into_iter().map(|guess| [guess.stiffness.value, guess.damping.value]);
     let starts: Vec<[f64; 2]> = guesses.chain(creeping).collect();
     let fit = |from: usize| {
         let problem = Problem::new(record, clock, (&[], false), from, noise_of(record));
-        let found = nearest(starts.iter().filter_map(|start| problem.fitted(*start)))?;
+        let fits = starts.iter().filter_map(|start| problem.fitted(*start));
+        let found = nearest(fits.filter(|(_, found)| found.stiffness.value < highest * highest))?;
         Some((found.0 / problem.samples as f64, found))
     };
     let whole = fit(0);

@@ -15,6 +15,8 @@ const AT: f64 = 6.0;
 const ENDS: f64 = 2.0;
 /// Largest part of half a swing that a clipped one stands: what stands for longer is held.
 const HELD: f64 = 0.95;
+/// Part of a plateau that stands at its extreme within the noise: two modes make it long, but not flat.
+const FLAT: f64 = 0.6;
 /// Amplitude in steps of the sensor from which a level is told from a step.
 const STEPS: f64 = 20.0;
 
@@ -50,7 +52,10 @@ impl Record {
         let stands = |turn: &&Turn| {
             let [first, last] = turn.plateau;
             let samples = (last - first) as f64;
-            samples > STANDS * swing + ENDS && samples < HELD * half_swing
+            let plateau = values.get(first..=last).unwrap_or_default();
+            let top = values.get(turn.at).copied().unwrap_or(f64::NAN);
+            let flat = plateau.iter().filter(|value| (**value - top).abs() <= reach).count() as f64;
+            samples > STANDS * swing + ENDS && samples < HELD * half_swing && flat > FLAT * samples
         };
         let at = |level: f64| {
             let is_at = |turn: &&Turn| values.get(turn.at).is_some_and(|value| (value - level).abs() <= band);
@@ -109,6 +114,14 @@ mod tests {
             assert_eq!(clipped(noise, 0.06, decay), None);
             assert_eq!(clipped(noise, 1e-5, |time| if time < 5.0 { 1.0 } else { decay(time - 5.0) }), None);
             assert_eq!(clipped(noise, 1e-5, |time| (1.0 - 0.06 * time).max(0.0) * (6.0 * time).cos()), None);
+        }
+        // Regression: a second mode at twice the frequency makes one side long and low.
+        for noise in [1e-4, 1e-3] {
+            assert_eq!(
+                clipped(noise, 1e-5, |time| decay(time) + 0.25 * decay(2.004 * time + 1e-3)),
+                None,
+                "{noise}"
+            );
         }
     }
 }

@@ -33,7 +33,7 @@ pub(crate) fn figure(
     let time = |value: f64| quantity(&significant(value, 4), "s");
     let others = whole.free_s.iter().filter(|free| **free != [from, to]);
     let others: Vec<String> = others.map(|[from, to]| format!("{} to {}", time(*from), time(*to))).collect();
-    let why = if whole.free_s.is_empty() { "as was asked" } else { "since it swings freely there" };
+    let why = if whole.free_s.is_empty() { "" } else { ", since it swings freely there" };
     let also = if others.is_empty() {
         String::new()
     } else {
@@ -44,7 +44,7 @@ pub(crate) fn figure(
         Reader::Page => "“from” and “to”",
     };
     let explanation = format!(
-        "The file's own time. Shaded: the part from {} to {}, which was read, {why}.{also} Another part is taken with \
+        "The file's own time. Shaded: the part from {} to {}, which was read{why}.{also} Another part is taken with \
          {keys}.",
         time(from),
         time(to)

@@ -86,6 +86,9 @@ pub(crate) fn maps(
     noise: f64,
 ) -> [Vec<MapCell>; 4] {
     let omega = data.facts.frequency;
+    // A rest position that the records hardly determine may lie far outside them.
+    let range = [data.facts.lowest, data.facts.highest];
+    let rest = if (range[0]..=range[1]).contains(&rest) { rest } else { 0.5 * (range[0] + range[1]) };
     let (mut time, mut amplitude, mut phase) = (Vec::new(), Vec::new(), Vec::new());
     for ((path, before), after) in paths.iter().zip(recalibrated).zip(repaired) {
         let motion = path.motion.position.iter().zip(&path.motion.velocity).zip(&path.times);
@@ -106,11 +109,7 @@ pub(crate) fn maps(
     [
         cells(&time, &[even(0.0, most(&time), segments)], noise),
         cells(&amplitude, &[even(0.0, most(&amplitude), AMPLITUDES)], noise),
-        cells(
-            &phase,
-            &[even(data.facts.lowest, data.facts.highest, PLANE), even(-speed, speed, PLANE)],
-            noise,
-        ),
+        cells(&phase, &[even(range[0], range[1], PLANE), even(-speed, speed, PLANE)], noise),
         spectrum(data, recalibrated, repaired, noise),
     ]
 }

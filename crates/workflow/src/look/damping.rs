@@ -10,7 +10,9 @@ const FEWEST_OF_A_FREQUENCY: usize = 5;
 /// Difference of two parts, in standard errors, from which one number does not describe both.
 const APART: f64 = 6.0;
 /// Difference of their damping ratios that it needs as well, as a part of the smaller one.
-const ANOTHER_DAMPING: f64 = 0.4;
+const ANOTHER_DAMPING: f64 = 0.2;
+/// Fall between them beyond that of their decays that it needs as well, as a part of the whole fall.
+const ANOTHER_LEVEL: f64 = 0.08;
 /// Difference of their frequencies that it needs as well, as a part of the first.
 const ANOTHER_FREQUENCY: f64 = 0.005;
 
@@ -42,7 +44,43 @@ pub(super) fn changing(envelope: &Envelope) -> Vec<String> {
              wide swing does; a small swing has the last one or what lies beyond it. A diagnosis finds the restoring force"
         )
     });
-    damping.into_iter().chain(frequency).collect()
+    let is_long = damping.is_none() && size >= FEWEST_OF_A_FREQUENCY;
+    let begins_s = envelope.times_s().get(count - size).filter(|_| is_long);
+    let step = begins_s.and_then(|begins_s| step(&first, &last, *begins_s));
+    damping.into_iter().chain(step).chain(frequency).collect()
+}
+
+/// Returns a remark if the decays of the first and of the last part of a decay, each carried on to the middle between them,
+/// do not meet there: between them something moved or stopped it. `begins_s` is the time of the last part's first peak after
+/// that of the first part.
+fn step(first: &Envelope, last: &Envelope, begins_s: f64) -> Option<String> {
+    let middle = 0.5 * (first.times_s().last()? + begins_s);
+    let ([one, one_error], [other, other_error]) = (level(first, middle)?, level(last, middle - begins_s)?);
+    let fall = first.log_amplitudes().first()? - last.log_amplitudes().last()?;
+    let is_far = (one - other).abs() > APART * libm::hypot(one_error, other_error)
+        && (one - other).abs() > ANOTHER_LEVEL * fall.abs();
+    let by = 100.0 * libm::expm1(other - one);
+    is_far.then(|| {
+        format!(
+            "between the first third of the decay and the last one the amplitude changes by {by:+.0} % beyond what the decay in \
+             either tells, as if something touched or pushed it: the damping ratio holds that change; set `data.from_s` or \
+             `data.to_s` to read one side of it alone"
+        )
+    })
+}
+
+/// Returns the logarithm of the amplitude that a part's decay has at a time after its first peak, with its standard error.
+fn level(decay: &Envelope, time: f64) -> Option<[f64; 2]> {
+    let fit = oracle::decay_rate(decay).ok()?;
+    let times = decay.times_s();
+    let count = times.len() as f64;
+    let mean = times.iter().sum::<f64>() / count;
+    let spread: f64 = times.iter().map(|time| (time - mean).powi(2)).sum();
+    let [_, ratio_error] = ratio(decay)?;
+    let rate_error = ratio_error * decay.omega_rad_s();
+    // The error of a line at its middle is that of its slope times the root mean square of the times.
+    let error = rate_error * libm::hypot((spread / count).sqrt(), time - mean);
+    Some([fit.log_amplitude_at(time), error])
 }
 
 /// Returns two numbers with their standard errors, as text, if they differ by more than [`APART`] of these and by more
@@ -68,11 +106,8 @@ fn part(envelope: &Envelope, from: usize, to: usize) -> Option<Envelope> {
 /// that is what is looked for.
 fn ratio(decay: &Envelope) -> Option<[f64; 2]> {
     let fit = oracle::decay_rate(decay).ok()?;
-    let times = decay.times_s();
-    let start = times.first()?;
-    let values = times.iter().zip(decay.log_amplitudes());
-    let residuals: Vec<f64> =
-        values.map(|(time, value)| value - fit.log_amplitude_at(time - start)).collect();
+    let values = decay.times_s().iter().zip(decay.log_amplitudes());
+    let residuals: Vec<f64> = values.map(|(time, value)| value - fit.log_amplitude_at(*time)).collect();
     let errors = decay.log_std_errors().map_or_else(|| vec![1.0; residuals.len()], <[f64]>::to_vec);
     Some([fit.zeta, fit.zeta_std_error * noise_share(&residuals, &errors)])
 }
@@ -129,6 +164,17 @@ mod tests {
         {
             let said = changing(&decay(amplitude));
             assert!(said.len() == 1 && said[0].contains("damping ratio"), "{said:?}");
+        }
+    }
+
+    /// Something touches it once, or pushes it, where its decay before and after is the same.
+    #[test]
+    fn a_touch_is_said() {
+        for factor in [0.75, 0.85, 1.12] {
+            let said = changing(&decay(|time| (-0.03 * time).exp() * if time < 19.5 { 1.0 } else { factor }));
+            assert!(said.len() == 1 && said[0].contains("touched"), "{said:?}");
+            let by = format!("{:+.0} %", 100.0 * (factor - 1.0));
+            assert!(said[0].contains(&by), "{said:?}");
         }
     }
 

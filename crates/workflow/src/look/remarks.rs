@@ -12,6 +12,9 @@ use report::format::{quantity, significant};
 /// records of noise, white or red, have 4 to 15 % or no frequency.
 const HARDLY_KNOWN: f64 = 0.03;
 
+/// Height of the largest swing in steps of the readings, below which their rounding is no small noise.
+const COARSE: f64 = 8.0;
+
 /// Noise of an input, as a part of its range, that is no error but the input itself.
 const LARGE_INPUT_NOISE: f64 = 0.05;
 /// Motion by an input's noise, in units of the sensor's, from which it is seen.
@@ -44,7 +47,8 @@ pub fn of_decay(record: &Record, clock: &Clock, modes: usize, envelope: Option<&
     if record.input().is_some() {
         return Vec::new();
     }
-    let remarks = [uneven(record, clock, modes), clipped(record).or_else(|| one_sided(record))];
+    let remarks =
+        [uneven(record, clock, modes), clipped(record, modes).or_else(|| one_sided(record)), coarse(record)];
     let changes = envelope.map(changing).unwrap_or_default();
     remarks.into_iter().flatten().chain(changes).collect()
 }
@@ -62,9 +66,9 @@ fn uneven(record: &Record, clock: &Clock, modes: usize) -> Option<String> {
     ))
 }
 
-/// Returns a remark if the sensor clips the largest swings.
-fn clipped(record: &Record) -> Option<String> {
-    let found = record.clipped()?;
+/// Returns a remark if the sensor clips the largest swings. The sum of several modes stands for long at its extremes too.
+fn clipped(record: &Record, modes: usize) -> Option<String> {
+    let found = record.clipped().filter(|_| modes < 2)?;
     Some(format!(
         "the values stand at {} in {} half swings, up to {:.2} s, as those of a sensor do whose range ends there: the swing is \
          larger, and its amplitude is not seen; set `data.from_s` to {:.2} to read what follows",
@@ -73,6 +77,19 @@ fn clipped(record: &Record) -> Option<String> {
         found.to_s,
         found.to_s + 0.005
     ))
+}
+
+/// Returns a remark if the sensor's steps are coarse beside the swing: their errors depend on the motion and are no noise.
+fn coarse(record: &Record) -> Option<String> {
+    let [lowest, highest] = extremes(record.values());
+    let steps = 0.5 * (highest - lowest) / record.quantum();
+    (steps < COARSE).then(|| {
+        format!(
+            "the largest swing is {steps:.1} steps of the readings high, {}: what rounding takes from a small swing is taken for \
+             damping, and the errors do not hold it; give a record of a larger swing or with more digits",
+            quantity(&significant(record.quantum(), 3), record.unit())
+        )
+    })
 }
 
 /// Returns a remark if the values turn back at one level on one side.
