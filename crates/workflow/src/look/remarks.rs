@@ -85,7 +85,7 @@ fn coarse(record: &Record) -> Option<String> {
     let steps = 0.5 * (highest - lowest) / record.quantum();
     (steps < COARSE).then(|| {
         format!(
-            "the largest swing is {steps:.1} steps of the readings high, {}: what rounding takes from a small swing is taken for \
+            "the largest swing is {steps:.1} steps of the readings high, of {} each: what rounding takes from a small swing is taken for \
              damping, and the errors do not hold it; give a record of a larger swing or with more digits",
             quantity(&significant(record.quantum(), 3), record.unit())
         )
