@@ -397,5 +397,16 @@ fn an_example_is_simulated_and_read_differently_by_hand() {
     page.browser.evaluate("document.querySelector('input[value=swings]').click()");
     let nominal = page.browser.evaluate("document.getElementById('nominal').value");
     assert!(nominal.as_str().unwrap().contains("\nnatural_frequency = "), "{nominal}");
+    // In coefficients it is the same oscillator, per unit of inertia: (2*pi*3.4997 Hz)^2.
+    page.browser.evaluate("document.querySelector('input[value=coefficients]').click()");
+    let stiffness = "Number(document.getElementById('nominal').value.match(/^stiffness = (.*)$/m)[1])";
+    let stiffness = page.browser.evaluate(stiffness).as_f64().unwrap();
+    assert!((stiffness - 483.53).abs() < 1.0, "{stiffness}");
+    page.browser.evaluate(
+        "{ const damping = document.getElementById('nominal-damping'); damping.value = '0,5'; \
+         damping.dispatchEvent(new Event('input')) }",
+    );
+    let nominal = page.browser.evaluate("document.getElementById('nominal').value");
+    assert!(nominal.as_str().unwrap().contains("\ndamping = 0.5\n"), "{nominal}");
     page.is_quiet();
 }

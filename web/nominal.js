@@ -75,7 +75,7 @@ const choose = (kind) => {
     box().value = [coordinate, ...numbers, ...kept].join("\n") + "\n";
   };
   const usual = ofGuess(known);
-  fill($("nominal-form"), make("div", { class: "grid" }, ...form.fields.map(([key, label, usual]) =>
+  fill($("nominal-form"), make("div", { class: "grid" }, ...form.fields.map(([key, label]) =>
     make("div", { class: "field" }, make("label", { for: `nominal-${key}` }, label),
       make("input", { id: `nominal-${key}`, type: "text", inputmode: "decimal", autocomplete: "off", value: known(key) ?? usual[key], oninput: write })))));
   write();
