@@ -251,7 +251,8 @@ impl Samples {
             fit.lines.iter().any(of)
         };
         let mut lines: Vec<(bool, &Fitted)> = steady.into_iter().zip(&fit.lines).collect();
-        lines.retain(|(_, line)| !is_harmonic(line));
+        // The harmonics of a swing decay with it.
+        lines.retain(|(is_steady, line)| *is_steady || !is_harmonic(line));
         lines.sort_by(|one, other| one.0.cmp(&other.0).then(other.1.energy.total_cmp(&one.1.energy)));
         let power: f64 = lines.iter().map(|(_, line)| line.energy).sum();
         let mode = |(is_steady, line): &(bool, &Fitted)| {
