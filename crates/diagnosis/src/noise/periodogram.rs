@@ -1,5 +1,7 @@
 //! Lines in values over time, at even or uneven times.
 
+#![allow(clippy::indexing_slicing, reason = "lanes are of a fixed number")]
+
 use crate::noise::statistics::mean;
 
 /// Returns the highest angular frequency at which samples `interval` seconds apart tell frequencies from
@@ -20,6 +22,46 @@ pub(crate) struct Line {
 /// Largest number of frequencies on a grid.
 pub(crate) const MOST_FREQUENCIES: usize = 4000;
 
+/// Samples that are rotated and summed side by side, whatever the processor; and the number of such groups that go through all
+/// frequencies together, few enough to stay near the processor.
+const LANES: usize = 4;
+const GROUPS: usize = 128;
+
+/// Some samples: their phasors at a frequency, the rotations to the next one, and their values. Beyond the last sample the
+/// values are zero.
+#[derive(Debug, Clone, Copy, Default)]
+struct Lanes {
+    sines: [f64; LANES],
+    cosines: [f64; LANES],
+    sine_steps: [f64; LANES],
+    cosine_steps: [f64; LANES],
+    values: [f64; LANES],
+}
+
+impl Lanes {
+    fn new(points: &[(f64, f64)], lowest: f64, step: f64) -> Self {
+        let mut lanes = Self::default();
+        for (lane, (time, value)) in points.iter().enumerate() {
+            (lanes.sines[lane], lanes.cosines[lane]) = libm::sincos(lowest * time);
+            (lanes.sine_steps[lane], lanes.cosine_steps[lane]) = libm::sincos(step * time);
+            lanes.values[lane] = *value;
+        }
+        lanes
+    }
+
+    /// Adds the samples to the sums of the sines and of the cosines, and turns the phasors to the next frequency.
+    fn add(&mut self, sums: &mut [[f64; LANES]; 2]) {
+        for lane in 0..LANES {
+            let (sine, cosine, value) = (self.sines[lane], self.cosines[lane], self.values[lane]);
+            let (ahead, along) = (self.sine_steps[lane], self.cosine_steps[lane]);
+            sums[0][lane] += value * sine;
+            sums[1][lane] += value * cosine;
+            self.sines[lane] = sine * along + cosine * ahead;
+            self.cosines[lane] = cosine * along - sine * ahead;
+        }
+    }
+}
+
 /// Adds to each gain on a grid of frequencies the decrease of the sum of squares by a sine and a cosine.
 /// `points` are times, even or uneven, and values already multiplied with weights; `squares` is the sum of
 /// the squared weights.
@@ -27,17 +69,18 @@ pub(crate) const MOST_FREQUENCIES: usize = 4000;
 /// The phasor of each sample is rotated from one frequency to the next, which costs four products instead of
 /// a sine and a cosine.
 pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, gains: &mut [f64]) {
-    let turned = |frequency: f64| points.iter().map(move |(time, _)| libm::sincos(frequency * time));
-    let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
-    let turns: Vec<(f64, f64)> = turned(step).collect();
-    let scale = 2.0 / squares.max(f64::MIN_POSITIVE);
-    for gain in gains {
-        let (mut sine, mut cosine) = (0.0, 0.0);
-        for (((s, c), (ds, dc)), (_, value)) in phasors.iter_mut().zip(&turns).zip(points) {
-            sine += value * *s;
-            cosine += value * *c;
-            (*s, *c) = (*s * dc + *c * ds, *c * dc - *s * ds);
+    let mut sums = vec![[[0.0; LANES]; 2]; gains.len()];
+    for part in points.chunks(LANES * GROUPS) {
+        let mut lanes: Vec<Lanes> = part.chunks(LANES).map(|own| Lanes::new(own, lowest, step)).collect();
+        for sums in &mut sums {
+            for own in &mut lanes {
+                own.add(sums);
+            }
         }
+    }
+    let scale = 2.0 / squares.max(f64::MIN_POSITIVE);
+    for (gain, sums) in gains.iter_mut().zip(sums) {
+        let [sine, cosine] = sums.map(|own| own.iter().sum::<f64>());
         *gain += scale * (sine * sine + cosine * cosine);
     }
 }

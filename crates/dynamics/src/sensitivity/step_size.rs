@@ -137,13 +137,9 @@ impl Tails {
     fn step_size(&self, degree: usize, tolerance: f64) -> f64 {
         let [last, second, third, fourth] = self.0;
         let root = |coefficient: f64, degree: usize| {
-            if coefficient > 0.0 {
-                libm::pow(tolerance / coefficient, 1.0 / degree as f64)
-            } else {
-                f64::INFINITY
-            }
+            if coefficient > 0.0 { libm::log(tolerance / coefficient) / degree as f64 } else { f64::INFINITY }
         };
-        let size = root(last, degree).min(root(second, degree - 1));
+        let size = libm::exp(root(last, degree).min(root(second, degree - 1)));
         // Small last terms do not bound the rest if terms still grow with the degree, as before a narrow
         // peak: two degrees have to gain a factor of four.
         let (late, early) = (last * size + second, third * size + fourth);

@@ -86,17 +86,11 @@ fn spectrum(rows: &[(f64, f64)], known_hz: Option<f64>) -> Option<Vec<(f64, f64)
             (*time, value * (1.0 - (TAU * (time - start) / duration).cos()) / samples.len() as f64)
         })
         .collect();
-    let amplitude = |frequency: f64| {
-        let parts = weighted.iter().fold((0.0, 0.0), |(cosine, sine), (time, value)| {
-            let (s, c) = (TAU * frequency * time).sin_cos();
-            (cosine + value * c, sine + value * s)
-        });
-        2.0 * parts.0.hypot(parts.1)
-    };
     let nyquist = 0.5 * samples.len() as f64 / duration;
     let lines = |from: f64, to: f64, count: usize| -> Vec<(f64, f64)> {
-        let place = |at: usize| from + (to - from) * at as f64 / count as f64;
-        (0..=count).map(place).map(|frequency| (frequency, amplitude(frequency))).collect()
+        let step = (to - from) / count as f64;
+        let amplitudes = amplitudes(&weighted, from, step, count + 1);
+        (0..=count).map(|at| from + step * at as f64).zip(amplitudes).collect()
     };
     let lowest = 1.0 / duration;
     let searched = || {
@@ -107,6 +101,24 @@ fn spectrum(rows: &[(f64, f64)], known_hz: Option<f64>) -> Option<Vec<(f64, f64)
     let strongest = known_hz.or_else(searched)?;
     let found = lines(lowest, (HARMONICS * strongest).min(nyquist), MOST_LINES);
     (duration > 0.0 && found.iter().all(|(_, amplitude)| amplitude.is_finite())).then_some(found)
+}
+
+/// Returns the amplitudes at `count` frequencies in Hz, `step` apart, of samples (times, values multiplied with weights that
+/// sum to 1). The phasor of each sample is rotated from one frequency to the next.
+fn amplitudes(weighted: &[(f64, f64)], lowest: f64, step: f64, count: usize) -> Vec<f64> {
+    let turned = |frequency: f64| weighted.iter().map(move |(time, _)| (TAU * frequency * time).sin_cos());
+    let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
+    let turns: Vec<(f64, f64)> = turned(step).collect();
+    let amplitude = |_| {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (((s, c), (ahead, along)), (_, value)) in phasors.iter_mut().zip(&turns).zip(weighted) {
+            sine += value * *s;
+            cosine += value * *c;
+            (*s, *c) = (*s * along + *c * ahead, *c * along - *s * ahead);
+        }
+        2.0 * f64::hypot(sine, cosine)
+    };
+    (0..count).map(amplitude).collect()
 }
 
 #[cfg(test)]
