@@ -6,6 +6,7 @@ use crate::model::{JointInfo, Model};
 use crate::recording::Recording;
 use dynamics::Hold;
 use dynamics::tree::{Acting, State, TreeError};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Errors of a model at one joint.
@@ -88,47 +89,67 @@ pub fn closed_loop(
     let Some(first) = recording.joints.first() else {
         return Ok(ClosedLoop { joints: None, runs: 0, starts: Vec::new() });
     };
-    let width = along.width();
-    let count = first.times.len();
+    let times = used(&first.times, along.width(), part);
+    let run = |times: &&[f64]| -> Result<Option<Vec<JointError>>, RobotError> {
+        let Some(begin) = times.first() else { return Ok(None) };
+        let drive = |time: &f64| -> Vec<f64> {
+            torques.iter().filter_map(|(times, own)| interpolated(times, own, *time)).collect()
+        };
+        let inputs: Vec<Vec<f64>> = times.iter().map(drive).collect();
+        match model.rollout(acting, &along.state(*begin), times, &inputs) {
+            Ok(path) => Ok(Some(errors(recording, times, &path))),
+            Err(RobotError::Motion(TreeError::Diverged { .. } | TreeError::NoInertia { .. })) => Ok(None),
+            Err(error) => Err(error),
+        }
+    };
+    let spans = in_runs(times, span);
+    let found: Vec<Option<Vec<JointError>>> = spans.par_iter().map(run).collect::<Result<_, _>>()?;
+    // The first run that leaves every bound is the last one.
+    let runs = found.iter().take_while(|own| own.is_some()).count();
+    let begins = spans.iter().take(runs + 1).filter_map(|own| own.first());
+    let starts = begins.map(|begin| (*begin, along.state(*begin))).collect();
+    let mut sums = vec![JointError::default(); model.joints().len()];
+    for own in found.iter().flatten() {
+        for (sum, own) in sums.iter_mut().zip(own) {
+            sum.squares += own.squares;
+            sum.samples += own.samples;
+        }
+    }
+    Ok(ClosedLoop { joints: (runs == found.len()).then_some(sums), runs, starts })
+}
+
+/// Returns the times of a recording between two shares of its length, without `width` samples at either end.
+fn used(times: &[f64], width: usize, part: Range<f64>) -> &[f64] {
+    let count = times.len();
     let from = ((part.start * count as f64) as usize).max(width);
     let to = ((part.end * count as f64) as usize).min(count.saturating_sub(width));
-    let times = first.times.get(from..to).unwrap_or_default();
-    let mut errors = vec![JointError::default(); model.joints().len()];
-    let mut runs = 0;
-    let mut starts = Vec::new();
-    let mut at = 0;
-    while let Some(&begin) = times.get(at) {
-        let end = at + times.get(at..).unwrap_or_default().partition_point(|time| *time <= begin + span);
-        let run = times.get(at..end).unwrap_or_default();
-        // A rest that is shorter than half a run would weigh its first moments twice.
-        let lasts = run.last().map_or(0.0, |last| last - begin);
-        if runs > 0 && lasts < 0.5 * span || run.len() < 2 {
+    times.get(from..to).unwrap_or_default()
+}
+
+/// Returns times in runs of `span` seconds. A rest that is shorter than half a run is left out beside others: it would weigh its
+/// first moments twice.
+fn in_runs(mut times: &[f64], span: f64) -> Vec<&[f64]> {
+    let mut runs = Vec::new();
+    while let (Some(begin), true) = (times.first(), times.len() > 1) {
+        let (run, rest) = times.split_at(times.partition_point(|time| *time <= begin + span));
+        if !runs.is_empty() && run.last().is_none_or(|last| last - begin < 0.5 * span) || run.len() < 2 {
             break;
         }
-        let drive = |time: f64| -> Vec<f64> {
-            torques.iter().filter_map(|(times, own)| interpolated(times, own, time)).collect()
-        };
-        let start = along.state(begin);
-        starts.push((begin, start.clone()));
-        let inputs: Vec<Vec<f64>> = run.iter().map(|time| drive(*time)).collect();
-        let path = match model.rollout(acting, &start, run, &inputs) {
-            Ok(path) => path,
-            Err(RobotError::Motion(TreeError::Diverged { .. } | TreeError::NoInertia { .. })) => {
-                return Ok(ClosedLoop { joints: None, runs, starts });
-            }
-            Err(error) => return Err(error),
-        };
-        for (time, position) in run.iter().zip(path) {
-            for ((error, channel), own) in errors.iter_mut().zip(&recording.joints).zip(position) {
-                let Some(measured) = interpolated(&channel.times, &channel.positions, *time) else {
-                    continue;
-                };
-                error.squares += (own - measured).powi(2);
-                error.samples += 1;
-            }
-        }
-        runs += 1;
-        at = end;
+        runs.push(run);
+        times = rest;
     }
-    Ok(ClosedLoop { joints: Some(errors), runs, starts })
+    runs
+}
+
+/// Compares positions along a run with those of a recording.
+fn errors(recording: &Recording, times: &[f64], path: &[Vec<f64>]) -> Vec<JointError> {
+    let mut errors = vec![JointError::default(); recording.joints.len()];
+    for (time, position) in times.iter().zip(path) {
+        for ((error, channel), own) in errors.iter_mut().zip(&recording.joints).zip(position) {
+            let Some(measured) = interpolated(&channel.times, &channel.positions, *time) else { continue };
+            error.squares += (own - measured).powi(2);
+            error.samples += 1;
+        }
+    }
+    errors
 }

@@ -18,6 +18,13 @@ const SPANS_S: [f64; 4] = [3.0, 1.5, 0.75, 0.375];
 /// Share of a single recording that is fitted, if no other one is there to check with.
 const FITTED: f64 = 0.67;
 
+/// Model that is run.
+enum Model {
+    Given,
+    Recalibrated,
+    Repaired,
+}
+
 /// Recordings and coefficients of a check.
 struct Check<'a> {
     recordings: Vec<&'a LoadedRecording>,
@@ -51,39 +58,45 @@ impl RobotQuestion {
             }
         }
         let longest = spans.into_iter().fold(0.0, f64::max);
-        let (mut recordings, mut held) = (Vec::new(), longest);
+        let (mut fitted, mut held) = (Vec::new(), longest);
         for span in SPANS_S.into_iter().filter(|span| *span < longest || *span == SPANS_S[3]) {
-            (recordings, held) = (self.runs(&check, span, &floors)?, span);
-            if recordings.iter().zip(&check.recordings).all(|(row, own)| is_followed(row, own)) {
+            (fitted, held) = (self.runs(&check, &[Model::Recalibrated, Model::Repaired], span)?, span);
+            if fitted.iter().zip(&check.recordings).all(|(found, own)| is_followed(found, own)) {
                 break;
             }
         }
+        let given = self.runs(&check, &[Model::Given], held)?;
+        let found = given.into_iter().zip(fitted).map(|(given, fitted)| [given, fitted].concat());
+        let recordings = check.recordings.iter().zip(found);
         Ok(ClosedLoopRow {
-            recordings,
+            recordings: recordings.map(|(own, found)| row(self, own, &found, &floors)).collect(),
             span_s: held.min(longest),
             is_held_out: true,
             held_out: check.held_out,
         })
     }
 
-    /// Runs the variants over the recordings of a check, in runs of `span` seconds.
+    /// Runs models over the recordings of a check, in runs of `span` seconds.
     fn runs(
         &self,
         check: &Check<'_>,
+        models: &[Model],
         span: f64,
-        floors: &[f64],
-    ) -> Result<Vec<ClosedLoopRecording>, RobotError> {
+    ) -> Result<Vec<Vec<ClosedLoop>>, RobotError> {
         let exact = vec![1.0; check.gains.len()];
-        // The model as given takes the torques as they were read.
-        let gains = [&exact, &check.gains, &check.gains];
         let one = |own: &&LoadedRecording| {
-            let of = |(acting, gains): (&Vec<Acting>, &Vec<f64>)| {
+            let of = |model: &Model| {
+                let [given, recalibrated, repaired] = &check.acting;
+                // The model as given takes the torques as they were read.
+                let (acting, gains) = match model {
+                    Model::Given => (given, &exact),
+                    Model::Recalibrated => (recalibrated, &check.gains),
+                    Model::Repaired => (repaired, &check.gains),
+                };
                 let variant = Variant { acting, holds: &check.holds, gains };
                 closed_loop(&*self.model, variant, &own.along, (span, check.part.clone()))
             };
-            let found: Vec<ClosedLoop> =
-                check.acting.par_iter().zip(gains).map(of).collect::<Result<_, RobotError>>()?;
-            Ok(row(self, own, &found, floors))
+            models.par_iter().map(of).collect()
         };
         check.recordings.iter().map(one).collect()
     }
@@ -193,13 +206,14 @@ impl RobotQuestion {
     }
 }
 
-/// Returns `true` if a fitted model stays closer to the motion of each joint than the mean position does.
-fn is_followed(row: &ClosedLoopRecording, own: &LoadedRecording) -> bool {
-    row.joints.iter().zip(&own.along.recording().joints).all(|(error, channel)| {
+/// Returns `true` if one of the fitted models stays closer to the motion of each joint than the mean position does.
+fn is_followed(found: &[ClosedLoop], own: &LoadedRecording) -> bool {
+    own.along.recording().joints.iter().enumerate().all(|(joint, channel)| {
         let count = channel.positions.len().max(1) as f64;
         let mean = channel.positions.iter().sum::<f64>() / count;
         let size = channel.positions.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / count;
-        let best = [error.recalibrated, error.repaired].into_iter().flatten().fold(f64::INFINITY, f64::min);
+        let error = |own: &ClosedLoop| own.joints.as_ref()?.get(joint)?.rms();
+        let best = found.iter().filter_map(error).fold(f64::INFINITY, f64::min);
         best * best <= size
     })
 }

@@ -7,7 +7,8 @@ use crate::read::Given;
 use diagnosis::{DiagnosisError, Settings, Stage};
 use dynamics::tree::Acting;
 use dynamics::{
-    Active, Coefficients, Coordinate, DynamicsError, Hold, KnownEffect, Nominal, NominalSimulator, System,
+    Active, Coefficients, Coordinate, DynamicsError, Hold, KnownEffect, Nominal, NominalSimulator, REGISTRY,
+    System,
 };
 use experiment::StatedNominal;
 use export::{equation_latex, equation_text};
@@ -16,17 +17,15 @@ use results::{CalibratedRow, Calibration, Equation, JointRepairRow, TrackingRow,
 use robot::{Along, Gain, JointInfo, Projected, RobotError, Scale, Tracking, project};
 use std::f64::consts::TAU;
 
-/// Effects that are no candidates for a joint: they would change the spring and damper that hold its simulator, or
-/// the whole drive, of which the measured torque is only a part; or bend the sensor's readings, from which the drive is
-/// computed too. A constant torque is part of the calibration. Any line of the drive's noise, which is red, would pass for
+/// Effects that are no candidates for a joint, beside those of a drive, which would change the whole computed one, of which the
+/// measured torque is only a part: they would change the spring and damper that hold its simulator, or bend the sensor's
+/// readings, from which the drive is computed too. A constant torque is part of the calibration. Any line of the drive's noise, which is red, would pass for
 /// a forcing or a second body. The weight of links depends on all joints and is the model's; along one joint's angle, with
 /// a spring, it would only imitate a spring that hardens.
-const NOT_OF_A_JOINT: [&str; 14] = [
+const NOT_OF_A_JOINT: [&str; 12] = [
     "backlash",
     "stiffness_drift",
     "damping_drift",
-    "input_delay",
-    "input_saturation",
     "sensor_lag",
     "sensor_nonlinearity",
     "sensor_drift",
@@ -172,7 +171,9 @@ impl JointQuestion {
         goes_on: &(dyn Fn(Stage) -> bool + Sync),
     ) -> Result<JointAnswer, WorkflowError> {
         let mut settings = settings.clone();
-        settings.without.extend(NOT_OF_A_JOINT.map(str::to_owned));
+        let of_a_drive =
+            REGISTRY.iter().filter(|effect| effect.description().driven_only).map(|own| own.id());
+        settings.without.extend(NOT_OF_A_JOINT.into_iter().chain(of_a_drive).map(str::to_owned));
         // The drive was computed for this behavior; that of the torque is in it.
         settings.hold = Some(Hold::Linear);
         let mut answer = self.question.answer_watched(&settings, seed, goes_on)?;
