@@ -105,9 +105,9 @@ pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) ->
         .collect()
 }
 
-/// Proposes to replace each member by its generalization, at each of its shapes. The first parameter keeps
-/// the member's size, further strengths of the same unit begin at half of it. The linearization cannot distinguish these: at
-/// the special case the shape has no effect.
+/// Proposes to replace each member by its generalization, at each of its shapes. The first parameters keep the
+/// member's values, further strengths of the first one's unit begin at half of its size. The linearization cannot
+/// distinguish these: at the special case the shape has no effect.
 pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let mut proposals = Vec::new();
@@ -117,8 +117,8 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
             for shape in general.shapes(&data.facts) {
                 let parameters = general.parameters(&data.facts);
                 let values = parameters.iter().zip(shape).enumerate();
-                let values = values.map(|(place, (parameter, shape))| match place {
-                    0 => *size,
+                let values = values.map(|(place, (parameter, shape))| match part.get(place) {
+                    Some(own) => *own,
                     _ if parameter.strength && general.quantity(place) == general.quantity(0) => 0.5 * size,
                     _ => shape,
                 });

@@ -30,6 +30,7 @@
 mod along;
 pub(crate) mod asymmetric_stiffness;
 pub(crate) mod backlash;
+pub(crate) mod bouc_wen;
 pub(crate) mod clock_drift;
 pub(crate) mod command_derivative;
 pub(crate) mod constant_torque;
@@ -87,6 +88,7 @@ pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&gravity::Gravity),
     Candidate::new(&backlash::Backlash),
     Candidate::new(&hysteresis::Hysteresis),
+    Candidate::new(&bouc_wen::BoucWen),
     Candidate::new(&end_stop::EndStop),
     Candidate::new(&stiffness_drift::StiffnessDrift),
     Candidate::new(&damping_drift::DampingDrift),
