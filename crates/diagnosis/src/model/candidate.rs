@@ -77,7 +77,7 @@ impl Candidate {
     }
 
     /// Returns the simpler candidate that this one tends to at an end of its shape, with the same first
-    /// parameter.
+    /// parameters.
     pub(crate) fn tends_to(self) -> Option<Self> {
         self.0.tends_to().map(Self)
     }

@@ -81,7 +81,7 @@ pub(crate) trait CandidateLaw: Any + Sync {
     }
 
     /// Returns the simpler candidate that this one tends to at an end of its shape, with the same first
-    /// parameter. Default: the one that it generalizes.
+    /// parameters. Default: the one that it generalizes.
     fn tends_to(&self) -> Option<&'static dyn CandidateLaw> {
         self.generalizes()
     }
