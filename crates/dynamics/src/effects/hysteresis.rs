@@ -31,11 +31,11 @@ const DESCRIPTION: Description = Description {
             default: None,
         },
         Parameter {
-            name: "asymmetry",
+            name: "softening",
             symbol: "γ",
             quantity: Quantity::Ratio,
             range: Range::ANY,
-            meaning: "softer while the friction builds up than while it falls where above 0; at -1 and below it never slides",
+            meaning: "softening of the contact as it bends; below 0 it stiffens, and from -1 down it never slides",
             default: Some(0.0),
         },
         Parameter {
@@ -89,8 +89,8 @@ fn power<S: Scalar>(size: S, exponent: S) -> S {
 }
 
 /// Returns the part of the initial rate that is left while z grows, from |z|.
-fn left<S: Scalar>(&[_, _, asymmetry, exponent]: &Values<S>, size: S) -> S {
-    -power(size, exponent) * (asymmetry + 1.0) + 1.0
+fn left<S: Scalar>(&[_, _, softening, exponent]: &Values<S>, size: S) -> S {
+    -power(size, exponent) * (softening + 1.0) + 1.0
 }
 
 impl Law for Hysteresis {
@@ -98,7 +98,7 @@ impl Law for Hysteresis {
     const EXPORT: Export = Export {
         states: &[StateExport {
             name: "z",
-            rate: "(velocity - (abs(velocity) * {z} + {asymmetry} * velocity * abs({z})) * (1 + ({exponent} - 1) \
+            rate: "(velocity - (abs(velocity) * {z} + {softening} * velocity * abs({z})) * (1 + ({exponent} - 1) \
                    * (abs({z}) - 1) * (1 + 0.5 * ({exponent} - 2) * (abs({z}) - 1)))) / {displacement}",
             start: "0",
         }],
@@ -112,7 +112,7 @@ impl Law for Hysteresis {
     }
 
     fn hidden_rate<S: Scalar>(
-        values @ &[_, displacement, asymmetry, exponent]: &Values<S>,
+        values @ &[_, displacement, softening, exponent]: &Values<S>,
         moment: &Moment<S>,
     ) -> Hidden<S> {
         let [z, _] = moment.hidden;
@@ -122,17 +122,17 @@ impl Law for Hysteresis {
                 let rate = moment.velocity - moment.velocity * z * moment.direction;
                 return [rate / displacement, S::from(0.0)];
             }
-            FALLING => power(-along, exponent) * (-asymmetry + 1.0) + 1.0,
+            FALLING => power(-along, exponent) * (-softening + 1.0) + 1.0,
             GROWING => left(values, along),
             _ => return [S::from(0.0); 2],
         };
         [moment.velocity * part / displacement, S::from(0.0)]
     }
 
-    fn region(values @ &[_, _, asymmetry, exponent]: &Values<f64>, moment: &Moment<f64>) -> i8 {
+    fn region(values @ &[_, _, softening, exponent]: &Values<f64>, moment: &Moment<f64>) -> i8 {
         let [z, _] = moment.hidden;
         let along = z * moment.direction;
-        if asymmetry == 0.0 && exponent == 1.0 {
+        if softening == 0.0 && exponent == 1.0 {
             return if moment.direction != 0.0 && 1.0 - along <= SATURATED { SLIDING } else { BUILDING };
         }
         match along {

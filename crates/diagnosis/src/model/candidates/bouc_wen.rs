@@ -6,7 +6,7 @@ use crate::data::scales::Scales;
 use crate::model::contact::bent;
 use dynamics::{Active, Effect, Moment, SystemEffect, Values};
 
-/// Initial asymmetries and exponents.
+/// Initial softenings and exponents.
 const FORMS: [[f64; 2]; 3] = [[-0.8, 1.0], [0.7, 1.0], [0.3, 2.0]];
 
 /// Those at which a large hysteresis is looked for, each at several displacements relative to the amplitude.
@@ -16,16 +16,16 @@ const DENSE_BENDING: [f64; 4] = [0.1, 0.25, 0.6, 1.2];
 /// Displacement, relative to the amplitude, with which a fit of another form begins again.
 const BENDING: f64 = 0.3;
 
-/// Limits of the displacement over the largest deflection, and of the asymmetry. A contact that bends further is a
-/// spring, and one of a larger asymmetry loses hardly anything.
+/// Limits of the displacement over the largest deflection, and of the softening. A contact that bends further is a
+/// spring, and one of a larger softening loses hardly anything.
 const LEAST_BENT: f64 = 1e-3;
 const MOST_BENT: f64 = 10.0;
-const MOST_ASYMMETRIC: f64 = 3.0;
+const MOST_SOFT: f64 = 3.0;
 
 /// Longest step along the motion, relative to the displacement.
 const STEP: f64 = 0.25;
 
-/// Hysteresis after Bouc and Wen: Dahl's parameters, the asymmetry and the exponent. Since the contact may remember
+/// Hysteresis after Bouc and Wen: Dahl's parameters, the softening and the exponent. Since the contact may remember
 /// its bending for many swings, each segment starts with a hidden state of its own.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BoucWen;
@@ -44,7 +44,7 @@ impl CandidateLaw for BoucWen {
         vec![
             Parameter::strength("torque"),
             Parameter::shape("displacement", LEAST_BENT * amplitude, MOST_BENT * amplitude),
-            Parameter::shape("asymmetry", -MOST_ASYMMETRIC, MOST_ASYMMETRIC),
+            Parameter::shape("softening", -MOST_SOFT, MOST_SOFT),
             Parameter::shape("exponent", 1.0, 3.0),
         ]
     }
@@ -71,14 +71,14 @@ impl CandidateLaw for BoucWen {
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
         let shape =
-            |[asymmetry, exponent]: [f64; 2]| vec![1.0, BENDING * facts.amplitude, asymmetry, exponent];
+            |[softening, exponent]: [f64; 2]| vec![1.0, BENDING * facts.amplitude, softening, exponent];
         FORMS.map(shape).to_vec()
     }
 
     fn dense_shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
         let displacements = DENSE_BENDING.map(|part| part * facts.amplitude);
         let of = |displacement| {
-            DENSE_FORMS.map(|[asymmetry, exponent]| vec![1.0, displacement, asymmetry, exponent])
+            DENSE_FORMS.map(|[softening, exponent]| vec![1.0, displacement, softening, exponent])
         };
         displacements.into_iter().flat_map(of).collect()
     }
@@ -89,8 +89,8 @@ impl CandidateLaw for BoucWen {
     }
 
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
-        let &[_, displacement, asymmetry, exponent] = shape else { return Vec::new() };
-        vec![(along.respond)(&bending([1.0, displacement, asymmetry, exponent], along))]
+        let &[_, displacement, softening, exponent] = shape else { return Vec::new() };
+        vec![(along.respond)(&bending([1.0, displacement, softening, exponent], along))]
     }
 }
 

@@ -56,8 +56,8 @@ impl CandidateLaw for Hysteresis {
 
     /// Values of the general law are those of [`BoucWen`](super::bouc_wen::BoucWen).
     fn stated(&self, active: &Active) -> Option<Vec<f64>> {
-        let &[torque, displacement, asymmetry, exponent] = active.values() else { return None };
-        (asymmetry == 0.0 && exponent == 1.0).then(|| vec![torque, displacement])
+        let &[torque, displacement, softening, exponent] = active.values() else { return None };
+        (softening == 0.0 && exponent == 1.0).then(|| vec![torque, displacement])
     }
 
     /// A bent contact is a spring while it bends.

@@ -20,6 +20,10 @@
 //!    [`StribeckFriction`](stribeck_friction::StribeckFriction) does.
 //! 2. Its module below, and its line in [`REGISTRY`].
 //!
+//! An effect may have a second law that generalizes its first, as [`BoucWen`](bouc_wen::BoucWen) generalizes
+//! [`Hysteresis`](hysteresis::Hysteresis). It is tried where the first leaves more than noise, and both count as the
+//! same effect in the answer; [`stated`](CandidateLaw::stated) says which of the two fits given values.
+//!
 //! Search, evidence, intervals, shares of the gap and the repaired simulator follow. A test of the whole
 //! program adds an effect in this way and diagnoses it.
 //!
