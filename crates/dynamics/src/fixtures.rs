@@ -36,7 +36,7 @@ const WEAKER: &[(&str, &[f64])] = &[
     ("gravity", &[60.0, 0.4]),
     ("constant_torque", &[1.5]),
     ("backlash", &[0.004]),
-    ("hysteresis", &[0.3, 0.01]),
+    ("hysteresis", &[0.3, 0.01, 0.4, 1.6]),
     ("end_stop", &[-0.55, 20_000.0, 0.05]),
     ("command_derivative", &[0.002]),
     ("torque_limit", &[190.0]),

@@ -45,6 +45,7 @@ fn values(effect: SystemEffect) -> Values<f64> {
     match effect {
         SystemEffect::StribeckFriction => [0.4, 0.9, 1.1, 0.0],
         SystemEffect::EndStop => [0.3, 50.0, 0.2, 0.0],
+        SystemEffect::Hysteresis => [0.7, 0.9, 0.4, 1.7],
         _ => [0.7, 0.9, 1.3, 0.0],
     }
 }
@@ -159,6 +160,12 @@ fn the_signs_are_those_of_the_equations() {
     }
     let [rate, _] = Hysteresis.hidden_rate(&values(Hysteresis), &at);
     assert!((rate - (0.8 - 0.8 * 0.3) / 0.9).abs() < 1e-14);
+    for (region, part) in [(2, -1.0 + 0.4), (3, 1.0 + 0.4)] {
+        let size = 0.3 * f64::from(2 * region - 5);
+        let power = size * (1.0 + 0.7 * (size - 1.0) - 0.5 * 0.7 * 0.3 * (size - 1.0).powi(2));
+        let [rate, _] = Hysteresis.hidden_rate(&values(Hysteresis), &Moment { region, ..at });
+        assert!((rate - 0.8 * (1.0 - power * part) / 0.9).abs() < 1e-14, "{region}: {rate}");
+    }
     let [velocity, acceleration] = FlexibleCoupling.hidden_rate(&values(FlexibleCoupling), &at);
     let expected = -(0.9 * (0.3 - 0.5) + 1.3 * (-0.8 - 0.8)) / 0.7;
     assert!(velocity == -0.8 && (acceleration - expected).abs() < 1e-14);

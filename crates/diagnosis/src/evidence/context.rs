@@ -323,14 +323,18 @@ impl<'a> Context<'a> {
             let gone: Vec<&Candidate> = own.iter().filter(|c| !others.contains(c)).collect();
             let come: Vec<&Candidate> = others.iter().filter(|c| !own.contains(c)).collect();
             let has_names = come.iter().all(|own| own.evidence_class() != EvidenceClass::Unnamed);
-            if let (&[gone], &[come], true) = (gone.as_slice(), come.as_slice(), has_names) {
+            if let (&[gone], &[come], true) = (gone.as_slice(), come.as_slice(), has_names)
+                && gone.effect() != come.effect()
+            {
                 let distance = (2.0 * ratio(repaired, fit, self.time)).max(0.0).sqrt();
                 found.push((Rivalry { effect: gone.id(), rival: come.id(), distance }, fit));
             }
         }
         // A generalization that was rejected because it reduced to the member itself is at distance 0.
         for member in own {
-            for &general in Candidate::ALL.iter().filter(|general| general.generalizes() == Some(*member)) {
+            let is_other = |general: &&Candidate| general.effect() != member.effect();
+            let generals = Candidate::ALL.iter().filter(|general| general.generalizes() == Some(*member));
+            for &general in generals.filter(is_other) {
                 let swapped = repaired
                     .hypothesis
                     .with(&own.iter().map(|c| if c == member { general } else { *c }).collect::<Vec<_>>());

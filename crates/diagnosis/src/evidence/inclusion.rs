@@ -302,7 +302,7 @@ impl<'a> Inclusion<'a> {
             for &own in
                 w.fit.hypothesis.candidates.iter().filter(|own| own.counts() && own.evidence_class() == class)
             {
-                match members.iter_mut().find(|(known, _)| *known == own) {
+                match members.iter_mut().find(|(known, _)| known.effect() == own.effect()) {
                     Some((_, sum)) => *sum += odds(w) / total,
                     None => members.push((own, odds(w) / total)),
                 }
@@ -314,7 +314,7 @@ impl<'a> Inclusion<'a> {
     /// Returns the probability that the system has a candidate, given its class.
     pub(crate) fn membership(&self, candidate: Candidate) -> f64 {
         let members = self.memberships(candidate.evidence_class());
-        members.iter().find(|(own, _)| *own == candidate).map_or(0.0, |(_, share)| *share)
+        members.iter().find(|(own, _)| own.effect() == candidate.effect()).map_or(0.0, |(_, share)| *share)
     }
 
     /// Returns the members of a class with shares that add up to 1, largest first.
@@ -335,7 +335,7 @@ impl<'a> Inclusion<'a> {
         if !members.iter().all(|(_, share)| *share >= TOLD || *share <= 1.0 - TOLD) {
             return false;
         }
-        let has = |w: &Weighed<'_>, own: Candidate| w.fit.hypothesis.candidates.contains(&own);
+        let has = |w: &Weighed<'_>, own: Candidate| w.fit.hypothesis.has(own.effect());
         let explains = |chosen: &dyn Fn(&Weighed<'_>) -> bool| {
             let all = self.sets.weighed.iter().zip(&self.sets.left).filter(|(w, _)| chosen(w));
             all.map(|(w, left)| w.evidence + left.price).fold(f64::NEG_INFINITY, f64::max)

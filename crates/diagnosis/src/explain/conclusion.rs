@@ -116,7 +116,8 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     list.extend(parts.shift.map(|shift| shifted(parts, shift)));
     for &candidate in parts.candidates {
         let is_named = parts.named().contains(&candidate);
-        let is_listed = list.iter().any(|row| row.id == candidate.id());
+        let is_other = parts.named().iter().any(|own| own.id() == candidate.id()) && !is_named;
+        let is_listed = is_other || list.iter().any(|row| row.id == candidate.id());
         if is_named || parts.probability(candidate) >= 0.01 && !is_listed {
             list.push(fitted(parts, candidate));
         }

@@ -9,7 +9,8 @@ use std::ops::Deref;
 
 /// Effect that can be fitted: a handle on its [`CandidateLaw`].
 ///
-/// Two candidates are equal if their effects are; there is one law for each effect.
+/// Two candidates are equal if their laws are. An effect may have a second law, which generalizes the first: a set
+/// never holds both.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate(&'static dyn CandidateLaw);
 
@@ -23,7 +24,7 @@ impl Deref for Candidate {
 
 impl PartialEq for Candidate {
     fn eq(&self, other: &Self) -> bool {
-        self.effect() == other.effect()
+        self.0.type_id() == other.0.type_id()
     }
 }
 
@@ -70,8 +71,13 @@ impl Candidate {
         self.0.generalizes().map(Self)
     }
 
+    /// Returns `true` if the candidate is a further law of the effect that it generalizes.
+    pub(crate) fn refines(self) -> bool {
+        self.generalizes().is_some_and(|simpler| simpler.effect() == self.effect())
+    }
+
     /// Returns the simpler candidate that this one tends to at an end of its shape, with the same first
-    /// parameter.
+    /// parameters.
     pub(crate) fn tends_to(self) -> Option<Self> {
         self.0.tends_to().map(Self)
     }

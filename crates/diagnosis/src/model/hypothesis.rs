@@ -158,6 +158,11 @@ impl Hypothesis {
         self.effects().nth(index)
     }
 
+    /// Returns `true` if an effect is among the candidates, by whichever of its laws.
+    pub(crate) fn has(&self, effect: Effect) -> bool {
+        self.candidates.iter().any(|own| own.effect() == effect)
+    }
+
     /// Returns `true` if the nominal simulator has an effect.
     pub(crate) fn knows(&self, candidate: Candidate) -> bool {
         self.known.iter().any(|known| known.candidate == candidate)

@@ -56,8 +56,9 @@ impl Candidate {
     /// Returns the candidate for a stated effect, with the law's parameters that a fit can move; `None` for
     /// effects of the measurement chain that change no value smoothly.
     pub(crate) fn of(active: &Active) -> Option<(Self, Vec<f64>)> {
-        let candidate = Self::that_fits(active.effect())?;
-        Some((candidate, candidate.stated(active)?))
+        let all = Self::ALL.iter().chain(&Self::NAMELESS).copied();
+        let mut fits = all.filter(|candidate| candidate.effect() == active.effect());
+        fits.find_map(|candidate| Some((candidate, candidate.stated(active)?)))
     }
 
     /// Returns every candidate that can act on these records and that the nominal simulator does not have
@@ -65,8 +66,9 @@ impl Candidate {
     pub(crate) fn that_apply(facts: &Scales, quantity: Quantity, simulator: &NominalSimulator) -> Vec<Self> {
         let known: Vec<Self> =
             simulator.effects().iter().filter_map(|own| Some(Self::of(&own.active)?.0)).collect();
-        let is_known =
-            |own: &Self| known.iter().any(|known| known == own || known.generalizes() == Some(*own));
+        let is_known = |own: &Self| {
+            known.iter().any(|known| known.effect() == own.effect() || known.generalizes() == Some(*own))
+        };
         let all = Self::ALL.iter().copied().filter(|own| !is_known(own));
         let applies = |own: &Self| own.is_observed_in(quantity) && own.applies(facts, simulator.nominal());
         all.filter(applies).collect()

@@ -57,7 +57,7 @@ fn parameters_are_the_laws_own() {
         if let Some(effect) = candidate.system() {
             let names: Vec<&str> = effect.description().parameters.iter().map(|p| p.name).collect();
             let fitted: Vec<&str> = parameters.iter().map(|p| p.name).collect();
-            assert_eq!(names, fitted, "{}", candidate.id());
+            assert!(names.starts_with(&fitted), "{}", candidate.id());
         }
     }
 }

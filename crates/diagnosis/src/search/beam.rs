@@ -177,6 +177,12 @@ impl Explored {
     fn of(archive: Archive, tried: BTreeSet<Vec<usize>>) -> Self {
         Self { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() }
     }
+
+    /// Returns `true` if the best set leaves so much more than noise that something must be missing from it.
+    pub(crate) fn leaves_more(&self, data: &Data) -> bool {
+        let time = self.archive.autocorrelation_time();
+        self.archive.ranked(time).first().is_some_and(|best| leaves_more(data, best))
+    }
 }
 
 /// Searches sets of candidates, starting from the `known` sets if there are any.
@@ -307,7 +313,10 @@ fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fi
     let &Asked { data, candidates, .. } = asked;
     let mut own = around(asked, base, is_best);
     own.extend(simplified(data, base, candidates));
-    own.extend(generalized(data, base, candidates));
+    // A further law of the same effect is tried where the first one leaves more than noise.
+    let is_short = is_best && leaves_more(data, base);
+    let general = candidates.iter().copied().filter(|own| is_short || !own.refines());
+    own.extend(generalized(data, base, &general.collect::<Vec<_>>()));
     if !is_best {
         return (own, Vec::new());
     }

@@ -73,6 +73,12 @@ impl Proposed {
         })
     }
 
+    /// Returns the sets of which at least one member has a property.
+    pub(crate) fn with_members(mut self, has: impl Fn(&Candidate) -> bool) -> Self {
+        self.sets.retain(|set| set.hypothesis.candidates.iter().any(&has));
+        self
+    }
+
     /// Returns position and velocity of a record at a time of one of its samples, or of the next one.
     pub(crate) fn state(&self, record: usize, time: f64) -> Option<[f64; 2]> {
         let states = self.states.get(record)?;

@@ -105,9 +105,9 @@ pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) ->
         .collect()
 }
 
-/// Proposes to replace each member by its generalization, at each of its shapes. The first parameter keeps
-/// the member's size, further strengths of the same unit begin at half of it. The linearization cannot distinguish these: at
-/// the special case the shape has no effect.
+/// Proposes to replace each member by its generalization, at each of its shapes. The first parameters keep the
+/// member's values, further strengths of the first one's unit begin at half of its size. The linearization cannot
+/// distinguish these: at the special case the shape has no effect.
 pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let mut proposals = Vec::new();
@@ -117,8 +117,8 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
             for shape in general.shapes(&data.facts) {
                 let parameters = general.parameters(&data.facts);
                 let values = parameters.iter().zip(shape).enumerate();
-                let values = values.map(|(place, (parameter, shape))| match place {
-                    0 => *size,
+                let values = values.map(|(place, (parameter, shape))| match part.get(place) {
+                    Some(own) => *own,
                     _ if parameter.strength && general.quantity(place) == general.quantity(0) => 0.5 * size,
                     _ => shape,
                 });
@@ -151,14 +151,15 @@ pub(crate) fn reshaped(data: &Data, ended: &Fit) -> Vec<Proposal> {
     begun
 }
 
-/// Proposes to replace each member by the simpler effect that it tends to, with the member's size. Friction
+/// Proposes to replace each member by the simpler effect that it tends to, with the member's first values. Friction
 /// that begins at zero often ends at a point where it stops the motion half a swing too early or too late.
 pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let members = base.hypothesis.candidates.iter().zip(parts);
     let simpler = members.filter_map(|(&member, part)| {
         let special = member.tends_to().filter(|special| candidates.contains(special))?;
-        let added = (special, vec![*part.first()?]);
+        let own = part.get(..special.parameters(&data.facts).len())?;
+        let added = (special, own.to_vec());
         Some(proposal(data, base, &[member], &[added]))
     });
     simpler.collect()
@@ -220,12 +221,13 @@ pub(crate) fn take_in(data: &Data, archive: &mut Archive, proposals: Vec<Proposa
 
 #[cfg(test)]
 mod tests {
-    use super::{Proposal, begins_closer, left_over, proposal, simplified};
+    use super::{Proposal, begins_closer, generalized, left_over, proposal, simplified};
     use crate::data::segments::Data;
     use crate::fit::fitted::{Fit, Point};
     use crate::fit::levenberg_marquardt::{Moving, fit, squares};
     use crate::fit::stopping::Stopping;
     use crate::model::candidate::Candidate;
+    use crate::model::candidates::bouc_wen::BoucWen;
     use crate::model::candidates::coulomb_friction::CoulombFriction;
     use crate::model::candidates::hysteresis::Hysteresis;
     use crate::model::candidates::quadratic_drag::QuadraticDrag;
@@ -234,6 +236,7 @@ mod tests {
     const COULOMB: Candidate = Candidate::new(&CoulombFriction);
     const DRAG: Candidate = Candidate::new(&QuadraticDrag);
     const HYSTERESIS: Candidate = Candidate::new(&Hysteresis);
+    const BOUC_WEN: Candidate = Candidate::new(&BoucWen);
 
     /// A decaying swing, and the simulator calibrated to it with members at given parameters.
     fn swing(members: &[(Candidate, &[f64])]) -> (Data, Fit) {
@@ -261,6 +264,13 @@ mod tests {
             simplified(&data, &alone, &[DRAG, HYSTERESIS]).is_empty(),
             "that is left out of the question"
         );
+        let (data, bent) = swing(&[(BOUC_WEN, &[0.7, 0.02, 0.3, 1.5])]);
+        let [set] = simplified(&data, &bent, Candidate::ALL).try_into().unwrap();
+        assert_eq!(set.hypothesis.candidates, [HYSTERESIS]);
+        assert_eq!(members(&bent, &set.point), [0.7, 0.02]);
+        let back = generalized(&data, &alone, &[BOUC_WEN]);
+        assert!(back.iter().all(|set| set.hypothesis.candidates == [DRAG, BOUC_WEN]));
+        assert!(back.iter().all(|set| members(&alone, &set.point)[..3] == [0.01, 0.7, 0.02]));
         let (data, beside) = swing(&[(COULOMB, &[0.5]), (HYSTERESIS, &[0.7, 0.02])]);
         let [set] = simplified(&data, &beside, Candidate::ALL).try_into().unwrap();
         assert_eq!(set.hypothesis.candidates, [COULOMB]);

@@ -23,8 +23,9 @@ pub(crate) struct Question {
     pub(crate) data: Data,
     pub(crate) base: Baseline,
     pub(crate) candidates: Vec<Candidate>,
-    /// Sets that the weak form proposes on all samples.
+    /// Sets of each effect's first law, of up to `largest` effects, that the weak form proposes on all samples.
     pub(crate) proposed: Proposed,
+    largest: usize,
     /// Number of input samples per knot of the input, on the coarse samples.
     knots: usize,
     /// Data with fewer samples and fewer knots of the input. `coarse_base` is the recalibrated simulator on
@@ -77,8 +78,15 @@ impl Question {
         let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
         let enough = 0.5 * threshold / finer;
         let largest = LARGEST.min(settings.most_effects);
-        let proposed = Proposed::of(&data, &base.calibrated, &candidates, largest);
-        Ok(Self { data, base, candidates, proposed, knots, coarse, coarse_base, enough })
+        let first: Vec<Candidate> = candidates.iter().copied().filter(|own| !own.refines()).collect();
+        let proposed = Proposed::of(&data, &base.calibrated, &first, largest);
+        Ok(Self { data, base, candidates, proposed, largest, knots, coarse, coarse_base, enough })
+    }
+
+    /// Returns the sets with further laws of effects that the weak form proposes on all samples.
+    pub(crate) fn refined(&self) -> Proposed {
+        let all = Proposed::of(&self.data, &self.base.calibrated, &self.candidates, self.largest);
+        all.with_members(|own| own.refines())
     }
 
     /// Returns the same question with more knots of the input, as many as a set needs that was found with

@@ -8,6 +8,7 @@ use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::asked::Asked;
 use crate::search::beam::{Explored, first_rounds, go_on, search};
+use crate::search::from_afar::from_afar;
 use crate::search::plain::plain_family;
 use crate::sets::archive::Archive;
 use crate::sets::proposals::proposal;
@@ -62,6 +63,12 @@ impl Searched {
         plain_family(data, calibrated, candidates, &mut explored.archive);
         let asked = Asked { data, calibrated, ..asked };
         go_on(&asked, &mut explored);
+        if explored.leaves_more(data) {
+            let refined = question.refined();
+            let asked = Asked { proposed: &refined, ..asked };
+            from_afar(&asked, &mut explored.archive);
+            go_on(&asked, &mut explored);
+        }
         Self { interval, found: explored.archive, most_effects }
     }
 

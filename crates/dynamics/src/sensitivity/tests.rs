@@ -217,6 +217,18 @@ fn columns_are_the_derivatives_for_every_effect_through_its_events() {
     }
 }
 
+/// The contact of the field's benchmark of hysteresis stiffens in the direction of motion.
+#[test]
+fn columns_are_the_derivatives_of_a_contact_that_never_slides() {
+    let (system, times) = (system(&[("hysteresis", &[60.0, 0.4, -1.4, 1.2])]), grid(2.0, 130.0));
+    let start = Start { position: 0.6, velocity: 2.0 };
+    check_columns(
+        &Case { name: "never slides", system: &system, start, input: None, times: &times },
+        1e-3,
+        1e-7,
+    );
+}
+
 #[test]
 fn columns_are_the_derivatives_with_every_effect_on() {
     let times = grid(0.8, 300.0);

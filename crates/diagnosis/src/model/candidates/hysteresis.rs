@@ -1,4 +1,4 @@
-//! Friction with a pre-sliding spring.
+//! Friction with a pre-sliding spring, after Dahl.
 //!
 //! Sets with a contact that hardly slides are kept, with its displacement at its bound: discarding them discarded the
 //! path to the sets that they lead to.
@@ -7,7 +7,7 @@ use super::coulomb_friction::CoulombFriction;
 use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::contact::bent;
-use dynamics::{Effect, Moment, SystemEffect, Values};
+use dynamics::{Active, Effect, Moment, SystemEffect, Values};
 
 /// Initial displacements, relative to the amplitude.
 const BENDING: [f64; 4] = [0.005, 0.02, 0.06, 0.2];
@@ -54,16 +54,25 @@ impl CandidateLaw for Hysteresis {
         Some(1)
     }
 
+    /// Values of the general law are those of [`BoucWen`](super::bouc_wen::BoucWen).
+    fn stated(&self, active: &Active) -> Option<Vec<f64>> {
+        let &[torque, displacement, softening, exponent] = active.values() else { return None };
+        (softening == 0.0 && exponent == 1.0).then(|| vec![torque, displacement])
+    }
+
     /// A bent contact is a spring while it bends.
     fn stiffness_and_damping(
         &self,
-        &[torque, displacement, ..]: &Values<f64>,
+        values @ &[torque, displacement, ..]: &Values<f64>,
         moment: &Moment<f64>,
         facts: &Scales,
     ) -> [f64; 2] {
         let deflection = moment.position - (moment.nominal.rest_angle + facts.rest_moved);
         let z = bent(deflection, moment.velocity / facts.frequency, displacement).z;
-        [torque * (1.0 - z * moment.direction).max(0.0) / displacement, 0.0]
+        let along = Moment { velocity: moment.direction, hidden: [z, 0.0], ..*moment };
+        let along = Moment { region: SystemEffect::Hysteresis.region(values, &along), ..along };
+        let [rate, _] = SystemEffect::Hysteresis.hidden_rate(values, &along);
+        [torque * (rate * moment.direction).max(0.0), 0.0]
     }
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {

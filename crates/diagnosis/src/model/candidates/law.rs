@@ -5,13 +5,14 @@ use crate::data::scales::Scales;
 use crate::model::sensor::Sensor;
 use dynamics::scalar::Dual;
 use dynamics::{Active, Coefficients, Effect, Moment, Nominal, Quantity, Values};
+use std::any::Any;
 
 /// Effect in the form that a diagnosis fits.
 ///
 /// The required methods have no sensible default: the effect, its class, its parameters, and the sign of its
 /// linear coefficients. All others default to what is right for a torque that depends smoothly on the state
 /// and is linear in its one parameter. So an effect's file states only what is special about it.
-pub(crate) trait CandidateLaw: Sync {
+pub(crate) trait CandidateLaw: Any + Sync {
     /// Returns the effect of the dynamics that is fitted. Its description gives id, budget class, units and
     /// literature.
     fn effect(&self) -> Effect;
@@ -80,7 +81,7 @@ pub(crate) trait CandidateLaw: Sync {
     }
 
     /// Returns the simpler candidate that this one tends to at an end of its shape, with the same first
-    /// parameter. Default: the one that it generalizes.
+    /// parameters. Default: the one that it generalizes.
     fn tends_to(&self) -> Option<&'static dyn CandidateLaw> {
         self.generalizes()
     }

@@ -20,6 +20,10 @@
 //!    [`StribeckFriction`](stribeck_friction::StribeckFriction) does.
 //! 2. Its module below, and its line in [`REGISTRY`].
 //!
+//! An effect may have a second law that generalizes its first, as [`BoucWen`](bouc_wen::BoucWen) generalizes
+//! [`Hysteresis`](hysteresis::Hysteresis). It is tried where the first leaves more than noise, and both count as the
+//! same effect in the answer; [`stated`](CandidateLaw::stated) says which of the two fits given values.
+//!
 //! Search, evidence, intervals, shares of the gap and the repaired simulator follow. A test of the whole
 //! program adds an effect in this way and diagnoses it.
 //!
@@ -30,6 +34,7 @@
 mod along;
 pub(crate) mod asymmetric_stiffness;
 pub(crate) mod backlash;
+pub(crate) mod bouc_wen;
 pub(crate) mod clock_drift;
 pub(crate) mod command_derivative;
 pub(crate) mod constant_torque;
@@ -87,6 +92,7 @@ pub(crate) const REGISTRY: &[Candidate] = &[
     Candidate::new(&gravity::Gravity),
     Candidate::new(&backlash::Backlash),
     Candidate::new(&hysteresis::Hysteresis),
+    Candidate::new(&bouc_wen::BoucWen),
     Candidate::new(&end_stop::EndStop),
     Candidate::new(&stiffness_drift::StiffnessDrift),
     Candidate::new(&damping_drift::DampingDrift),

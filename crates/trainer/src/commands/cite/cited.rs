@@ -6,15 +6,15 @@ const LITERATURE: &str = include_str!("literature.bib");
 /// Citations whose works do not follow from the first author and the year, and the keys of these works.
 const CITED: &[(&str, &[&str])] = &[
     (
-        "Dahl, Aerospace Corporation TOR-0158(3107-18)-1 (1968), exponent 1; the same as Bouc-Wen (Wen, Journal of the Engineering Mechanics Division 102 (1976) 249) with n = 1, γ = 0",
-        &["dahl1968", "wen1976"],
-    ),
-    (
         "Feldman, Hilbert Transform Applications in Mechanical Vibration, Wiley 2011, chapter 9",
         &["feldman2011applications"],
     ),
     ("Feldman, Mechanical Systems and Signal Processing 25 (2011) 735-802", &["feldman2011hilbert"]),
     ("NumPy reference, numpy.polyfit", &["numpypolyfit"]),
+    (
+        "Wen, Journal of the Engineering Mechanics Division 102 (1976) 249; with γ = 0 and n = 1 Dahl, Aerospace Corporation TOR-0158(3107-18)-1 (1968), exponent 1",
+        &["dahl1968", "wen1976"],
+    ),
 ];
 
 /// Keys of the works that every diagnosis follows, whatever it finds: on the fits, the effective size of
