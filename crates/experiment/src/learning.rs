@@ -42,6 +42,10 @@ pub struct LearnSettings {
     problems: Option<Vec<String>>,
     /// Upper limit on the steps of every fit; `None` for each learner's own limit.
     pub max_steps: Option<u64>,
+    /// Number of seeds with which the learners of `redrawn` are trained: the study's own and the next ones.
+    pub seeds: u64,
+    /// Names of the learners that are trained with every seed, all known.
+    pub redrawn: Vec<String>,
     /// `true` if each learner is also scored with everything that it learned set to zero, and with noise as
     /// its input.
     pub ablations: bool,
@@ -189,6 +193,13 @@ const LEARN: &[Field] = &[
         "Cap on the steps of every fit, in addition to a learner's own; 0 leaves networks \
                 untrained.",
     ),
+    Field::new("seeds", Kind::Integer { min: 1, max: 1000 }, Default::Integer(1)).meaning(
+        "Seeds with which the learners in redrawn are trained: the study's own and the next ones; the table has the \
+                scores of the first, and the median and the range over all.",
+    ),
+    Field::new("redrawn", Kind::Texts { at_least: 0, at_most: 100 }, Default::Texts(&[])).meaning(
+        "Learners that are trained with every seed, by name: those whose result depends on random numbers.",
+    ),
     Field::new("ablations", Kind::Boolean, Default::Boolean(true)).meaning(
         "Whether each learner's model is judged twice more: with everything that it learned \
                 set to zero, and with noise in place of past and input.",
@@ -290,6 +301,7 @@ pub fn resolve_learning(document: &Document, learners: &[Entry]) -> Result<Learn
     let settings: LearnSettings = resolved.section("learn")?;
     let known: Vec<String> = learners.iter().map(|entry| entry.id.to_owned()).collect();
     all_known(document, "learn.learners", "learner", settings.learners.as_deref(), &known)?;
+    all_known(document, "learn.redrawn", "learner", Some(&settings.redrawn), &known)?;
     let known: Vec<String> = BASELINES.iter().map(|baseline| baseline.id.to_owned()).collect();
     all_known(document, "learn.baselines", "baseline", settings.baselines.as_deref(), &known)?;
     all_known(document, "learn.problems", "problem", settings.problems.as_deref(), &ids)?;

@@ -136,6 +136,9 @@ pub struct LearnRow {
     /// smallest so far.
     #[serde(default)]
     pub validation: Option<LearnValidation>,
+    /// Errors with each of several seeds, this row's own first; empty if the method was trained with one seed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub draws: Vec<LearnDraw>,
     /// Coefficients of the learned law by name; `None` if the model is not a law.
     pub coefficients: Option<BTreeMap<String, LearnCoefficient>>,
     /// Learned law as text.
@@ -153,6 +156,41 @@ pub struct LearnRow {
     pub failure: Option<String>,
     /// Name of the model's file in the run's folder.
     pub model: Option<String>,
+}
+
+/// Errors of a method trained with one of several seeds. Errors that are not finite are `null`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LearnDraw {
+    /// The seed.
+    pub seed: u64,
+    /// Root mean square error of the free run over all test parts.
+    pub free_run_rmse: Option<f64>,
+    /// Root mean square error of free runs over the validation part.
+    pub validation_rmse: Option<f64>,
+    /// Errors on the stated test parts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<LearnPartError>,
+}
+
+impl LearnRow {
+    /// Returns the smallest error, the median and the largest one over the seeds; `None` for a single seed. An error
+    /// that is not finite counts as the largest.
+    #[must_use]
+    pub fn range(&self, of: impl Fn(&LearnDraw) -> Option<f64>) -> Option<[f64; 3]> {
+        let mut all: Vec<f64> = self.draws.iter().map(|draw| of(draw).unwrap_or(f64::INFINITY)).collect();
+        all.sort_by(f64::total_cmp);
+        let last = all.len().checked_sub(1)?;
+        let median = 0.5 * (all.get(last / 2)? + all.get(all.len() / 2)?);
+        Some([*all.first()?, median, *all.last()?])
+    }
+}
+
+impl LearnDraw {
+    /// Returns the error on a stated test part.
+    #[must_use]
+    pub fn on(&self, part: &str) -> Option<f64> {
+        self.parts.iter().find(|own| own.part == part)?.free_run_rmse
+    }
 }
 
 /// Error of free runs over the validation part.
@@ -310,7 +348,33 @@ pub struct LearnTraceRow {
 
 #[cfg(test)]
 mod tests {
-    use super::{LearnEnd, Reached};
+    use super::{LearnDraw, LearnEnd, LearnKind, LearnRow, Reached};
+
+    #[test]
+    fn a_range_over_seeds_counts_a_failure_as_the_largest_error() {
+        let draw =
+            |seed, free_run_rmse| LearnDraw { seed, free_run_rmse, validation_rmse: None, parts: Vec::new() };
+        let mut row = LearnRow {
+            problem: "swing".to_owned(),
+            id: "lstm".to_owned(),
+            title: "LSTM".to_owned(),
+            kind: LearnKind::Learner,
+            test: None,
+            validation: None,
+            draws: Vec::new(),
+            coefficients: None,
+            equation: None,
+            torque_error: None,
+            parameters: 0,
+            seconds: 0.0,
+            reached: LearnEnd::Failed,
+            failure: None,
+            model: None,
+        };
+        assert_eq!(row.range(|draw| draw.free_run_rmse), None);
+        row.draws = vec![draw(0, Some(3.0)), draw(1, Some(1.0)), draw(2, None), draw(3, Some(2.0))];
+        assert_eq!(row.range(|draw| draw.free_run_rmse), Some([1.0, 2.5, f64::INFINITY]));
+    }
 
     #[test]
     fn the_end_of_a_training_is_one_word() {

@@ -56,7 +56,7 @@ pub use joints::{
 };
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
+    LearnCoefficient, LearnData, LearnDraw, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
     LearnPublished, LearnResult, LearnRow, LearnSeriesRow, LearnTest, LearnTorqueRow, LearnTraceRow,
     LearnValidation,
 };

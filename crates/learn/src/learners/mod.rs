@@ -6,6 +6,7 @@ pub mod grey_box;
 pub mod library;
 pub mod lstm;
 pub mod neural_ode;
+pub mod neural_state_space;
 pub mod pinn;
 pub mod sindy;
 pub mod state_space;
@@ -31,6 +32,7 @@ pub static LEARNERS: &[Entry] = &[
     transformer::ENTRY,
     temporal_convolution::ENTRY,
     state_space::ENTRY,
+    neural_state_space::ENTRY,
 ];
 
 /// Returns the learner with an identifier; `None` if there is none.

@@ -16,7 +16,7 @@ fn averaged(input: &Input, (time, interval): (f64, f64)) -> f64 {
 }
 
 /// Resamples a trajectory at even times from its first sample on.
-pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Trajectory, LearnError> {
+pub(crate) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Trajectory, LearnError> {
     let Some(&first) = part.times_s().first() else { return Ok(part.clone()) };
     let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
     let times: Vec<f64> = (0..count).map(|at| first + at as f64 * interval).collect();
@@ -30,7 +30,7 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Tra
 
 /// Returns the positions at the last `count` even times of a past; the last one is its last sample.
 /// The first sample of a past that is too short is repeated before it if `repeats` is set.
-pub(super) fn past_positions(
+pub(crate) fn past_positions(
     past: &Past<'_>,
     interval: f64,
     count: usize,
@@ -59,7 +59,7 @@ pub(super) fn past_positions(
 ///
 /// # Errors
 /// [`LearnError::UnequalColumns`] if there is not one input for every time.
-pub(super) fn inputs(
+pub(crate) fn inputs(
     (past, ahead): (&Past<'_>, &Ahead<'_>),
     hold: Hold,
     interval: f64,
@@ -84,7 +84,7 @@ pub(super) fn inputs(
 }
 
 /// Interpolates values at the times of a record from values at even times that start at `first`.
-pub(super) fn read_back(values: &[f64], first: f64, interval: f64, times: &[f64]) -> Vec<f64> {
+pub(crate) fn read_back(values: &[f64], first: f64, interval: f64, times: &[f64]) -> Vec<f64> {
     let even: Vec<f64> = (0..values.len()).map(|at| first + at as f64 * interval).collect();
     times.iter().map(|&time| interpolated(&even, values, time)).collect()
 }

@@ -17,7 +17,7 @@
 mod band;
 mod fields;
 mod frame;
-mod grid;
+pub(crate) mod grid;
 mod learner;
 mod model;
 mod roll;

@@ -8,7 +8,7 @@ use crate::learners::LEARNERS;
 use crate::learners::state_space::StateSpace;
 use crate::testing::{context, data_set, drag_and_cubic, learner};
 use crate::training::Trainable;
-use crate::{Context, Kind, Past};
+use crate::{Context, Past};
 use estimator::Checkpoints;
 use frame::Framed;
 use neural::{DeviceKind, Precision, tensor};
@@ -112,8 +112,10 @@ fn a_correction_depends_on_no_later_input() {
     }
 }
 
+/// Returns the learners of this module, which all have its settings.
 fn sequence_learners() -> impl Iterator<Item = &'static str> {
-    LEARNERS.iter().filter(|entry| entry.kind == Kind::Sequence).map(|entry| entry.id)
+    let is_own = |entry: &&crate::Entry| entry.fields.iter().any(|field| field.key == "block_periods");
+    LEARNERS.iter().filter(is_own).map(|entry| entry.id)
 }
 
 /// Without a training step, a sequence model is an autoregression; its ridge keeps it from being worse than

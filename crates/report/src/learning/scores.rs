@@ -2,7 +2,7 @@
 
 use crate::format::{fixed, significant};
 use crate::tables::{ScoreRow, ScoreTable, whole};
-use results::{LearnKind, LearnPart, LearnProblem, LearnRow};
+use results::{LearnDraw, LearnKind, LearnPart, LearnProblem, LearnRow};
 
 /// Columns before those of the test parts, and after them.
 const FIRST: [&str; 2] = ["Method", "Free run"];
@@ -27,8 +27,11 @@ fn of_method(row: &LearnRow, problem: &LearnProblem) -> ScoreRow {
     let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
     let cells = row.test.as_ref().map_or_else(Vec::new, |test| {
         let on = |part: &LearnPart| test.parts.iter().find(|own| own.part == part.id);
-        let parts = problem.parts.iter().map(|part| on(part).map(|own| number(own.free_run_rmse)));
+        let of_part =
+            |part: &LearnPart| Some(ranged(row, |draw| draw.on(&part.id), number(on(part)?.free_run_rmse)));
+        let parts = problem.parts.iter().map(of_part);
         let validation = row.validation.map(|own| significant(own.free_run_rmse, 3));
+        let validation = validation.map(|own| ranged(row, |draw| draw.validation_rmse, own));
         let stated = parts.chain((!problem.parts.is_empty()).then_some(validation));
         let last = [
             number(test.over_noise),
@@ -44,6 +47,14 @@ fn of_method(row: &LearnRow, problem: &LearnProblem) -> ScoreRow {
     });
     let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());
     ScoreRow { title: row.title.clone(), is_marked: row.kind == LearnKind::Learner, cells, reason }
+}
+
+/// Returns the median and the range over several seeds; for a single one, its own cell.
+fn ranged(row: &LearnRow, of: impl Fn(&LearnDraw) -> Option<f64>, own: String) -> String {
+    row.range(of).map_or(own, |all| {
+        let [least, median, most] = all.map(|error| significant(error, 3));
+        format!("{median} ({least} to {most})")
+    })
 }
 
 /// Returns a row for each method of others, in the order in which the parts state them.

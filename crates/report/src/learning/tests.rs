@@ -11,6 +11,7 @@ fn row(id: &str, kind: LearnKind, error: Option<f64>) -> LearnRow {
         id: id.to_owned(),
         title: format!("Method {id}"),
         kind,
+        draws: Vec::new(),
         validation: None,
         test: error.map(|error| LearnTest {
             free_run_rmse: Some(error),

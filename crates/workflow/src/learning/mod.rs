@@ -7,7 +7,7 @@ mod tried;
 
 pub use data::{check_record, trajectory};
 pub use method::{Judged, Method, attempt, judged, method_of, methods, truth_of};
-pub use rows::{ablation_rows, described, row, sort};
+pub use rows::{ablation_rows, described, draw, row, sort};
 pub use tried::{Tried, tried};
 
 use dynamics::System;

@@ -8,7 +8,7 @@ use learn::judge::{Run, Score, Truth, run_error, runs, runs_on_noise, score_of_r
 use learn::learners::find;
 use record::Origin;
 use results::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
+    LearnCoefficient, LearnData, LearnDraw, LearnEnd, LearnKind, LearnPart, LearnPartError, LearnProblem,
     LearnPublished, LearnRow, LearnTest, LearnValidation, Reached,
 };
 use seed::Seed;
@@ -32,6 +32,7 @@ pub fn row(
         kind: method.kind,
         test: None,
         validation: None,
+        draws: Vec::new(),
         coefficients: None,
         equation: None,
         torque_error: None,
@@ -65,6 +66,21 @@ pub fn row(
     row
 }
 
+/// Returns the errors of an attempt with one of several seeds.
+#[must_use]
+pub fn draw(seed: u64, ready: &Ready, tried: &Tried) -> LearnDraw {
+    let finite = |error: f64| Some(error).filter(|error| error.is_finite());
+    let Ok(judged) = &tried.fitted else {
+        return LearnDraw { seed, free_run_rmse: None, validation_rmse: None, parts: Vec::new() };
+    };
+    LearnDraw {
+        seed,
+        free_run_rmse: finite(judged.score.free_run_rmse),
+        validation_rmse: finite(judged.validation),
+        parts: part_errors(&judged.runs, ready),
+    }
+}
+
 /// Builds the ablation rows of a learner's model: one with everything that it learned set to zero, one with
 /// noise in place of past and input. Empty for other methods, which learned nothing, and for a model that
 /// cannot be stored.
@@ -89,6 +105,7 @@ pub fn ablation_rows(
         kind: LearnKind::Ablation,
         test: score.as_ref().ok().map(|score| LearnTest { coverage_95: None, ..test(score, &data.unit) }),
         validation: None,
+        draws: Vec::new(),
         coefficients: None,
         equation: None,
         torque_error: None,

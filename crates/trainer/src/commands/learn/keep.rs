@@ -5,8 +5,8 @@ use crate::error::{LearnCommandError, TrainerError};
 use crate::folders::page::write_report;
 use experiment::LearnStudy;
 use results::{
-    LearnData, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTorqueRow, LearnTraceRow,
-    RESULT_SCHEMA,
+    LearnData, LearnDraw, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTorqueRow,
+    LearnTraceRow, RESULT_SCHEMA,
 };
 use runs::{RunFolder, to_csv};
 use serde_json::json;
@@ -20,6 +20,8 @@ pub(super) struct Row<'a> {
     pub(super) tried: Tried,
     /// Rows of the model with everything that it learned set to zero, and with noise as its input.
     pub(super) ablated: Vec<LearnRow>,
+    /// Errors with every seed, those of this row's own seed first.
+    pub(super) draws: Vec<LearnDraw>,
 }
 
 impl Row<'_> {
@@ -45,7 +47,8 @@ pub(super) fn result(
         let truth = own.first().and_then(|row| truth_of(row.ready));
         let told = |own: &&Row<'_>| {
             let file = Some(own.model_file());
-            row(&problem.id, own.ready, own.method, &own.tried, truth.as_ref(), file)
+            let made = row(&problem.id, own.ready, own.method, &own.tried, truth.as_ref(), file);
+            LearnRow { draws: if own.draws.len() > 1 { own.draws.clone() } else { Vec::new() }, ..made }
         };
         let mut made: Vec<LearnRow> = own.iter().map(told).collect();
         made.extend(own.iter().flat_map(|row| row.ablated.iter().cloned()));

@@ -32,6 +32,8 @@ pub(super) struct Trying<'a> {
     /// Number of steps of its trace after which a training pauses, to be resumed later.
     pub(super) pause_after: Option<u64>,
     pub(super) ledger: &'a Ledger,
+    /// Ending of the names of checkpoints: empty for the study's own seed.
+    pub(super) mark: &'a str,
 }
 
 impl Trying<'_> {
@@ -47,7 +49,7 @@ impl Trying<'_> {
         ready: &Ready,
         method: &Method<'_>,
     ) -> Result<Tried, TrainerError> {
-        let name = format!("{problem}/{}", method.id);
+        let name = format!("{problem}/{}{}", method.id, self.mark);
         if let Some(finished) = self.ledger.finished::<Finished>(&name)? {
             let restored = Stored::from_bytes(&finished.model).and_then(|stored| {
                 let entry = find(&stored.learner).ok_or(LearnError::Interrupted)?;

@@ -14,7 +14,7 @@ use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use ::learn::LearnError;
 use estimator::Cancel;
-use experiment::{CheckpointSettings, LearnStudy};
+use experiment::{CheckpointSettings, LearnSettings, LearnStudy};
 use keep::Row;
 use kept::Trying;
 use problem::{Prepared, prepare};
@@ -24,7 +24,7 @@ use results::LearnKind;
 use runs::RunFolder;
 use serde_json::json;
 use std::time::Instant;
-use workflow::learning::{Method, Ready, ablation_rows, methods};
+use workflow::learning::{Method, Ready, ablation_rows, draw, methods};
 
 /// Checkpoint settings of a training: every ten seconds, at the end of an epoch.
 const KEPT: CheckpointSettings = CheckpointSettings { interval_s: 10.0, interval_steps: None };
@@ -74,9 +74,9 @@ pub(crate) fn perform(of: &Study<'_>) -> Result<Outcome, TrainerError> {
         cancel: of.cancel,
         pause_after: of.pause_after,
         ledger: &ledger,
+        mark: "",
     };
-    let how = (output.quiet || output.json, study.settings.ablations);
-    let tried = try_all(&trying, problems, &methods, pool, how)?;
+    let tried = try_all(&trying, problems, &methods, pool, (output.quiet || output.json, &study.settings))?;
     let _saving = Saving::begin();
     let interrupted = tried.iter().any(|row| matches!(row.tried.fitted, Err(LearnError::Interrupted)));
     let result = keep::result(study, problems, &tried, start.elapsed().as_secs_f64());
@@ -111,29 +111,61 @@ fn try_all<'a>(
     problems: &'a [Prepared],
     methods: &'a [Method<'a>],
     pool: &ThreadPool,
-    (silent, ablations): (bool, bool),
+    (silent, settings): (bool, &LearnSettings),
 ) -> Result<Vec<Row<'a>>, TrainerError> {
-    let jobs: Vec<(&Prepared, &Ready, &Method<'_>)> = problems
+    let seeds = |method: &Method<'_>| match settings.redrawn.iter().any(|name| name == method.id) {
+        true => settings.seeds,
+        false => 1,
+    };
+    let jobs: Vec<(&Prepared, &Ready, &Method<'_>, u64)> = problems
         .iter()
         .filter_map(|problem| Some((problem, problem.ready.as_ref().ok()?)))
         .flat_map(|(problem, ready)| methods.iter().map(move |method| (problem, ready, method)))
         .filter(|(_, ready, method)| method.kind != LearnKind::Reference || ready.truth.is_some())
+        .flat_map(|(problem, ready, method)| {
+            (0..seeds(method)).map(move |draw| (problem, ready, method, draw))
+        })
         .collect();
     let progress = Progress::over(jobs.len() as u64, "fits", silent);
-    let tried = pool.install(|| {
+    let all: Result<Vec<(Row<'a>, u64)>, TrainerError> = pool.install(|| {
         jobs.into_par_iter()
-            .map(|(problem, ready, method)| {
+            .map(|(problem, ready, method, draw)| {
+                let mark = if draw == 0 {
+                    String::new()
+                } else {
+                    format!("/seed-{}", trying.seed.wrapping_add(draw))
+                };
+                let trying = Trying { seed: trying.seed.wrapping_add(draw), mark: &mark, ..*trying };
                 let tried = trying.tried(&problem.id, ready, method)?;
                 let seed = trying.seed_of(&problem.id, method);
-                let ablated = match ablations {
+                let ablated = match settings.ablations && draw == 0 {
                     true => ablation_rows(&problem.id, ready, method, &tried, &seed),
                     false => Vec::new(),
                 };
                 progress.one_of_many_done();
-                Ok(Row { problem, ready, method, tried, ablated })
+                Ok((Row { problem, ready, method, tried, ablated, draws: Vec::new() }, trying.seed))
             })
             .collect()
     });
     progress.finish();
-    tried
+    Ok(with_draws(all?, trying.seed))
+}
+
+/// Collects the rows of further seeds in those of the study's own seed.
+fn with_draws<'a>(all: Vec<(Row<'a>, u64)>, own: u64) -> Vec<Row<'a>> {
+    let mut rows: Vec<Row<'a>> = Vec::new();
+    for (row, seed) in all {
+        let told = draw(seed, row.ready, &row.tried);
+        match rows.last_mut().filter(|_| seed != own) {
+            None => rows.push(Row { draws: vec![told], ..row }),
+            Some(first) => {
+                first.draws.push(told);
+                // A study that was stopped in one of its seeds goes on there.
+                if matches!(row.tried.fitted, Err(LearnError::Interrupted)) {
+                    first.tried.fitted = Err(LearnError::Interrupted);
+                }
+            }
+        }
+    }
+    rows
 }

@@ -71,12 +71,22 @@ fn table_of_parts(problem: &LearnProblem, rows: &[&LearnRow]) -> String {
         ["method"].into_iter().chain(names).chain(["validation", "numbers", "s"]).collect();
     let in_unit =
         |error: Option<f64>| error.map_or_else(|| "∞".to_owned(), |error| prefixed(error, &problem.unit));
+    // Over several seeds, the median and the range.
+    let ranged = |own: String, range: Option<[f64; 3]>| match range {
+        Some([least, median, most]) => {
+            let [least, median, most] = [least, median, most].map(|own| in_unit(Some(own)));
+            format!("{median} ({least} to {most})")
+        }
+        None => own,
+    };
     let own = |row: &&LearnRow| {
         let error = |part: &LearnPart| {
             let errors = row.test.as_ref().map(|test| &test.parts);
-            in_unit(errors.and_then(|errors| errors.iter().find(|own| own.part == part.id)?.free_run_rmse))
+            let own = errors.and_then(|errors| errors.iter().find(|own| own.part == part.id)?.free_run_rmse);
+            ranged(in_unit(own), row.range(|draw| draw.on(&part.id)))
         };
         let validation = in_unit(row.validation.map(|validation| validation.free_run_rmse));
+        let validation = ranged(validation, row.range(|draw| draw.validation_rmse));
         let numbers = [validation, row.parameters.to_string(), format!("{:.1}", row.seconds)];
         [named(row)].into_iter().chain(problem.parts.iter().map(error)).chain(numbers).collect()
     };
