@@ -51,14 +51,14 @@ impl Lanes {
 
     /// Adds the samples to the sums of the sines and of the cosines, and turns the phasors to the next frequency.
     fn add(&mut self, sums: &mut [[f64; LANES]; 2]) {
-        for lane in 0..LANES {
+        (0..LANES).for_each(|lane| {
             let (sine, cosine, value) = (self.sines[lane], self.cosines[lane], self.values[lane]);
             let (ahead, along) = (self.sine_steps[lane], self.cosine_steps[lane]);
             sums[0][lane] += value * sine;
             sums[1][lane] += value * cosine;
             self.sines[lane] = sine * along + cosine * ahead;
             self.cosines[lane] = cosine * along - sine * ahead;
-        }
+        });
     }
 }
 
