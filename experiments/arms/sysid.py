@@ -4,17 +4,16 @@
 
 For each arm, `mujoco.sysid` fits every joint's armature, damping, friction loss and torque offset to the first 67 % of the log: the
 part to which the coefficients behind `closed_loop` were fitted. Its sequences start at measured states, follow the measured torques,
-which keep their last sample, and are made longer by stages up to `closed_loop.span_s`, each fitted from the values of the one before;
-with --direct all have this length at once. With --all, stiffness and the polynomials of damping and stiffness are fitted too: all that a
-joint of MuJoCo has. The fitted model is then run from the held-out starts that joints.json states, and compared with the
-positions as the answers were. Chains of bodies that fall are chaotic: see README.md for what the figures are worth.
+which keep their last sample, and last as long as the runs of the closed loop (`closed_loop.span_s`); the fit starts from one of
+sequences of 0.375 s. --longest shortens them. With --all, stiffness and the polynomials of damping and stiffness are fitted
+too: all that a joint of MuJoCo has. The fitted model is then run from the held-out starts that joints.json states, and
+compared with the positions as the answers were. Fits are kept beside the answers and not computed again.
 """
 import argparse
 import contextlib
 import io
 import json
 import logging
-import sys
 import time
 from pathlib import Path
 
@@ -101,15 +100,14 @@ class Arm:
             sensors.append(sysid.TimeSeries.from_names(np.arange(samples + 1) * self.every * STEP, self.position[at], self.model))
         return sysid.ModelSequences("arm", self.spec, [f"at{first}" for first in starts], states, controls, sensors)
 
-    def fit(self, kinds, direct):
+    def fit(self, kinds, longest):
         parameters = self.parameters(kinds)
-        span = self.loop["span_s"]
-        stages = [(span, 1.0)] if direct or span == SHORT_S else [(SHORT_S, 0.5), (span, 1.0)]
+        span = min(self.loop["span_s"], longest)
+        stages = [(SHORT_S, 0.5), (span, 1.0)] if span > SHORT_S else [(span, 1.0)]
         for own, share in stages:
             residual = sysid.build_residual_fn(models_sequences=[self.sequences(own, share)], n_threads=1)
             with contextlib.redirect_stdout(io.StringIO()):
-                parameters, result = sysid.optimize(parameters, residual, verbose=False, max_iters=15, x_scale="jac", eps=1e-6, xtol=1e-2)
-            print("   ", own, [float(f"{x:.4g}") for x in result.extras["objective"]], time.process_time(), file=sys.stderr, flush=True)
+                parameters, _ = sysid.optimize(parameters, residual, verbose=False, max_iters=15, x_scale="jac", eps=1e-6, xtol=1e-2)
         return parameters
 
     def errors(self, model):
@@ -132,7 +130,7 @@ def main():
     options = argparse.ArgumentParser()
     options.add_argument("arms", type=Path)
     options.add_argument("answers", type=Path)
-    options.add_argument("--direct", action="store_true", help="fit sequences of the full length at once")
+    options.add_argument("--longest", type=float, default=np.inf, help="seconds that a sequence lasts at most")
     options.add_argument("--all", action="store_true", help="fit all that a joint of MuJoCo has")
     options.add_argument("--only", nargs="*", help="names of arms")
     given = options.parse_args()
@@ -147,11 +145,11 @@ def main():
         truth = json.loads((folder / "truth.json").read_text())
         arm = Arm(folder, found)
         ours = [[own[name] if own[name] is not None else np.inf for name in ("nominal", "recalibrated", "repaired")] for own in found["closed_loop"]["recordings"][0]["joints"]]
-        fitted, own = answer.parent / f"sysid{'-all' * given.all}{'-direct' * given.direct}.json", {}
+        fitted, own = answer.parent / f"sysid{'-all' * given.all}{f'-{given.longest:g}' if given.longest < np.inf else ''}.json", {}
         if not fitted.exists():
             begin = time.process_time()
             try:
-                parameters = arm.fit(ALL if given.all else LINEAR, given.direct)
+                parameters = arm.fit(ALL if given.all else LINEAR, given.longest)
                 own["rms"] = arm.errors(sysid.apply_param_modifiers(parameters, arm.spec.copy())).tolist()
                 own["parameters"] = {name: float(value.value[0]) for name, value in parameters.items()}
             except (ValueError, ArithmeticError, RuntimeError, np.linalg.LinAlgError, mujoco.FatalError) as error:
