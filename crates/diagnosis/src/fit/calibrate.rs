@@ -7,7 +7,7 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::significance::{OFF_BY_CHANCE, significant};
 use crate::fit::stopping::Stopping;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Known};
-use dynamics::{Hold, Nominal, NominalSimulator};
+use dynamics::{Effect, Hold, Nominal, NominalSimulator, SystemEffect};
 use rayon::prelude::*;
 
 /// Fits of the given simulator and of the recalibrated one.
@@ -29,7 +29,7 @@ impl Baseline {
 
 /// Returns what calibration may move: the damping always, stiffness and rest angle if there is a spring, the
 /// inertia if a measured input tells it apart from the stiffness, and the parameters of known effects that
-/// are to be recalibrated.
+/// are to be recalibrated. On a spring a known constant torque does what the rest angle does, and moves in its place.
 pub(crate) fn movable(nominal: &Nominal, known: &[Known], driven: bool) -> Vec<Calibrated> {
     let mut movable = Vec::new();
     if driven {
@@ -37,7 +37,11 @@ pub(crate) fn movable(nominal: &Nominal, known: &[Known], driven: bool) -> Vec<C
     }
     movable.push(Calibrated::Damping);
     if nominal.stiffness() > 0.0 {
-        movable.extend([Calibrated::Stiffness, Calibrated::RestAngle]);
+        movable.push(Calibrated::Stiffness);
+        let torque = Effect::System(SystemEffect::ConstantTorque);
+        if !known.iter().any(|own| own.recalibrate && own.candidate.effect() == torque) {
+            movable.push(Calibrated::RestAngle);
+        }
     }
     for (number, own) in known.iter().enumerate().filter(|(_, own)| own.recalibrate) {
         let parameters = 0..own.stated.len();

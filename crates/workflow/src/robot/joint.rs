@@ -37,6 +37,9 @@ const NOT_OF_A_JOINT: [&str; 12] = [
     "gravity",
 ];
 
+/// Effect that stands for the offset of a torque sensor.
+const OFFSET: &str = "constant_torque";
+
 /// One joint along the measured motion.
 pub struct JointQuestion {
     /// Joint as the model describes it.
@@ -122,7 +125,9 @@ fn stated(joint: &JointInfo, tracking: &Tracking, file: &str) -> Result<StatedNo
     })
     .map_err(refused)?
     .with_coordinate(coordinate);
-    let mut effects = Vec::new();
+    // Springs of a joint are relaxed at its zero, wherever a torque beside them holds it.
+    let offset = Active::named(OFFSET, &[("torque", 0.0)]).map_err(refused)?;
+    let mut effects = vec![KnownEffect { active: offset, recalibrate: true }];
     if joint.friction > 0.0 {
         let active = Active::named("coulomb_friction", &[("torque", joint.friction)]).map_err(refused)?;
         effects.push(KnownEffect { active, recalibrate: true });
@@ -192,7 +197,11 @@ impl JointQuestion {
         let repair = with_sensor(beyond(&calibration, &self.tracking, |row| row.repaired));
         let recalibrated = with_sensor(beyond(&calibration, &self.tracking, |row| row.recalibrated));
         let acting = [
-            Acting { damping: self.joint.damping, effects: self.known(), ..Acting::default() },
+            Acting {
+                damping: self.joint.damping,
+                effects: beside_offset(&self.known()),
+                ..Acting::default()
+            },
             acting(&self.joint, &recalibrated, self.recalibrated(&answer)),
             acting(&self.joint, &repair, answer.found.repaired.effects.clone()),
         ];
@@ -245,16 +254,12 @@ fn beyond(
     tracking: &Tracking,
     of: impl Fn(&CalibratedRow) -> Option<WithInterval>,
 ) -> JointRepairRow {
-    let stiffness = of(&calibration.stiffness);
-    let offset = of(&calibration.rest_angle).map(|rest| {
-        let by = stiffness.map_or(tracking.stiffness, |own| own.value);
-        WithInterval { value: by * rest.value, interval_95: rest.interval_95.map(|end| by * end) }
-    });
+    let offset = calibration.effects.iter().find(|row| row.id == OFFSET);
     JointRepairRow {
         armature: of(&calibration.inertia).map(|own| less(own, tracking.inertia)),
         damping: of(&calibration.damping).map(|own| less(own, tracking.damping)),
-        stiffness: stiffness.map(|own| less(own, tracking.stiffness)),
-        torque_offset: offset,
+        stiffness: of(&calibration.stiffness).map(|own| less(own, tracking.stiffness)),
+        torque_offset: offset.and_then(|row| row.parameters.values().find_map(&of)),
         torque_gain: None,
     }
 }
@@ -269,8 +274,13 @@ fn acting(joint: &JointInfo, repair: &JointRepairRow, effects: Vec<Active>) -> A
         damping: value(repair.damping).max(0.0),
         stiffness: value(repair.stiffness),
         torque: value(repair.torque_offset),
-        effects,
+        effects: beside_offset(&effects),
     }
+}
+
+/// Returns the effects but for the offset, which a joint has as a number of its own.
+fn beside_offset(effects: &[Active]) -> Vec<Active> {
+    effects.iter().filter(|active| active.id() != OFFSET).copied().collect()
 }
 
 /// Takes spring and damper out of an answer: the joint alone remains.
@@ -283,27 +293,22 @@ fn free(answer: &mut Answer, tracking: &Tracking, repair: &JointRepairRow) -> Re
     let calibration = &mut answer.result.calibration;
     shift(&mut calibration.damping, tracking.damping);
     shift(&mut calibration.stiffness, tracking.stiffness);
-    // The position at which the spring is relaxed tells a constant torque, which stands with the joint.
-    calibration.rest_angle.recalibrated = None;
-    calibration.rest_angle.repaired = None;
-    calibration.rest_angle.determined = None;
+    // The offset stands with the joint.
+    calibration.effects.retain(|row| row.id != OFFSET);
     let refused = |error: DynamicsError| WorkflowError::Diagnosis {
         file: answer.result.nominal.clone(),
         source: DiagnosisError::Dynamics(error),
     };
     let own = *answer.repaired.system.nominal();
-    let mut effects = answer.repaired.system.effects().to_vec();
-    // A constant torque that the repair has already stays one.
-    let offset = repair.torque_offset.filter(|own| own.value != 0.0);
-    if let Some(offset) = offset.filter(|_| effects.iter().all(|active| active.id() != "constant_torque")) {
-        effects.push(Active::named("constant_torque", &[("torque", offset.value)]).map_err(refused)?);
+    let mut effects = beside_offset(answer.repaired.system.effects());
+    if let Some(offset) = repair.torque_offset.filter(|own| own.value != 0.0) {
+        effects.push(Active::named(OFFSET, &[("torque", offset.value)]).map_err(refused)?);
     }
     // Neither a damper nor a spring of a joint gives energy: a value below 0 is an error of the fit.
     let nominal = own
         .with_coefficients(Coefficients {
             damping: (own.damping() - tracking.damping).max(0.0),
             stiffness: (own.stiffness() - tracking.stiffness).max(0.0),
-            rest_angle: 0.0,
             ..own.coefficients()
         })
         .map_err(refused)?;
