@@ -149,7 +149,7 @@ impl RobotQuestion {
         })
     }
 
-    /// Fits the effects that an answer names, and no others, to other recordings.
+    /// Fits effects of the classes that an answer names, and no others, to other recordings.
     fn again(
         &self,
         own: &JointAnswer,
@@ -157,9 +157,16 @@ impl RobotQuestion {
         settings: &Settings,
         seed: u64,
     ) -> Result<JointAnswer, WorkflowError> {
-        let named = &own.answer.result.verdict.effects;
+        let result = &own.answer.result;
+        // The class is what a recording tells; with less of it, another kind of the class may be the simpler one.
+        let kinds = result.classes.iter().map(|class| class.kinds.iter().map(|kind| kind.id.as_str()));
+        let named: Vec<&str> = kinds
+            .map(Iterator::collect::<Vec<_>>)
+            .filter(|kinds| result.verdict.effects.iter().any(|own| kinds.contains(&own.as_str())))
+            .flatten()
+            .collect();
         let ids = REGISTRY.iter().map(|effect| effect.id().to_owned());
-        let without = ids.filter(|id| !named.contains(id)).collect();
+        let without = ids.filter(|id| !named.contains(&id.as_str())).collect();
         let settings = Settings { without, ..settings.clone() };
         let joint = place(self.model.joints(), &own.joint.name)?;
         self.joint(joint, recordings, share)?.answer(&settings, seed, &|_| true)
