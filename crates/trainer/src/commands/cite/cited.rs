@@ -13,7 +13,7 @@ const CITED: &[(&str, &[&str])] = &[
     ("NumPy reference, numpy.polyfit", &["numpypolyfit"]),
     (
         "Wen, Journal of the Engineering Mechanics Division 102 (1976) 249; with γ = 0 and n = 1 Dahl, Aerospace Corporation TOR-0158(3107-18)-1 (1968), exponent 1",
-        &["dahl1968", "wen1976"],
+        &["wen1976", "dahl1968"],
     ),
 ];
 
