@@ -23,14 +23,11 @@ use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Step};
 use dynamics::Hold;
 use estimator::Reached;
 use fit::{Piece, Prior, Problem};
-use model::{About, Member, NeuralStateSpace};
+use model::{About, ID, Member, NeuralStateSpace};
 use network::{Shape, Wiring};
 use serde::Deserialize;
 use settings::{Default, Field, Kind as Value};
 use std::f64::consts::TAU;
-
-/// Identifier of the learner.
-const ID: &str = "neural-state-space";
 
 /// Entry in the registry.
 pub const ENTRY: Entry = Entry {

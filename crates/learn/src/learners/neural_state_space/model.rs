@@ -1,6 +1,5 @@
 //! Trained networks as a model.
 
-use super::ID;
 use super::fit::{Piece, Prior, Problem};
 use super::network::Shape;
 use crate::data::{Scale, span_s};
@@ -8,6 +7,9 @@ use crate::sequence::grid::{inputs, past_positions, read_back};
 use crate::{Ahead, LearnError, Model, Past, Predicted, Stored, Tensor};
 use dynamics::Hold;
 use serde::{Deserialize, Serialize};
+
+/// Identifier of the learner.
+pub(super) const ID: &str = "neural-state-space";
 
 /// Contents of a model's file beside the numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
