@@ -159,14 +159,12 @@ impl RobotQuestion {
     ) -> Result<JointAnswer, WorkflowError> {
         let result = &own.answer.result;
         // The class is what a recording tells; with less of it, another kind of the class may be the simpler one.
-        let kinds = result.classes.iter().map(|class| class.kinds.iter().map(|kind| kind.id.as_str()));
-        let named: Vec<&str> = kinds
-            .map(Iterator::collect::<Vec<_>>)
-            .filter(|kinds| result.verdict.effects.iter().any(|own| kinds.contains(&own.as_str())))
-            .flatten()
-            .collect();
-        let ids = REGISTRY.iter().map(|effect| effect.id().to_owned());
-        let without = ids.filter(|id| !named.contains(&id.as_str())).collect();
+        let classes = result.classes.iter().map(|class| &class.kinds);
+        let named =
+            classes.filter(|kinds| kinds.iter().any(|kind| result.verdict.effects.contains(&kind.id)));
+        let named: Vec<&str> = named.flatten().map(|kind| kind.id.as_str()).collect();
+        let others = REGISTRY.iter().map(|effect| effect.id()).filter(|id| !named.contains(id));
+        let without = others.map(str::to_owned).collect();
         let settings = Settings { without, ..settings.clone() };
         let joint = place(self.model.joints(), &own.joint.name)?;
         self.joint(joint, recordings, share)?.answer(&settings, seed, &|_| true)

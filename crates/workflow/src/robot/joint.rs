@@ -19,9 +19,9 @@ use std::f64::consts::TAU;
 
 /// Effects that are no candidates for a joint, beside those of a drive, which would change the whole computed one, of which the
 /// measured torque is only a part: they would change the spring and damper that hold its simulator, or bend the sensor's
-/// readings, from which the drive is computed too. A constant torque is part of the calibration. Any line of the drive's noise, which is red, would pass for
-/// a forcing or a second body. The weight of links depends on all joints and is the model's; along one joint's angle, with
-/// a spring, it would only imitate a spring that hardens.
+/// readings, from which the drive is computed too. A constant torque is part of the calibration. Any line of the drive's
+/// noise, which is red, would pass for a forcing or a second body. The weight of links depends on all joints and is the
+/// model's; along one joint's angle, with a spring, it would only imitate a spring that hardens.
 const NOT_OF_A_JOINT: [&str; 12] = [
     "backlash",
     "stiffness_drift",
@@ -202,8 +202,8 @@ impl JointQuestion {
                 effects: beside_offset(&self.known()),
                 ..Acting::default()
             },
-            acting(&self.joint, &recalibrated, self.recalibrated(&answer)),
-            acting(&self.joint, &repair, answer.found.repaired.effects.clone()),
+            acting(&self.joint, &recalibrated, &self.recalibrated(&answer)),
+            acting(&self.joint, &repair, &answer.found.repaired.effects),
         ];
         free(&mut answer, &self.tracking, &repair)?;
         Ok(JointAnswer {
@@ -265,7 +265,7 @@ fn beyond(
 }
 
 /// Returns what acts in a joint by its fitted coefficients; one that is not determined is 0.
-fn acting(joint: &JointInfo, repair: &JointRepairRow, effects: Vec<Active>) -> Acting {
+fn acting(joint: &JointInfo, repair: &JointRepairRow, effects: &[Active]) -> Acting {
     let value = |own: Option<WithInterval>| own.map_or(0.0, |own| own.value);
     Acting {
         // A file that holds an armature holds none below 0.
@@ -274,7 +274,7 @@ fn acting(joint: &JointInfo, repair: &JointRepairRow, effects: Vec<Active>) -> A
         damping: value(repair.damping).max(0.0),
         stiffness: value(repair.stiffness),
         torque: value(repair.torque_offset),
-        effects: beside_offset(&effects),
+        effects: beside_offset(effects),
     }
 }
 

@@ -1,9 +1,8 @@
 //! Hysteresis that bends in another way than Dahl's law, or hardly slides.
 
-use super::hysteresis::Hysteresis;
+use super::hysteresis::{Hysteresis, bent_at_first};
 use super::{Along, CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
-use crate::model::contact::bent;
 use dynamics::{Active, Effect, Moment, SystemEffect, Values};
 
 /// Initial softenings and exponents.
@@ -32,11 +31,11 @@ pub(crate) struct BoucWen;
 
 impl CandidateLaw for BoucWen {
     fn effect(&self) -> Effect {
-        Effect::System(SystemEffect::Hysteresis)
+        Hysteresis.effect()
     }
 
     fn evidence_class(&self) -> EvidenceClass {
-        EvidenceClass::Friction
+        Hysteresis.evidence_class()
     }
 
     fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
@@ -97,13 +96,7 @@ impl CandidateLaw for BoucWen {
 /// Returns −z along a motion that does not reverse between samples, by steps of fourth order.
 fn bending(values: Values<f64>, along: &Along<'_>) -> Vec<f64> {
     let [_, displacement, ..] = values;
-    let rest = along.nominal.rest_angle + along.facts.rest_moved;
-    let mut z = match (along.position.first(), along.velocity.first()) {
-        (Some(position), Some(velocity)) if !along.first => {
-            bent(position - rest, velocity / along.facts.frequency, displacement).z
-        }
-        _ => 0.0,
-    };
+    let mut z = bent_at_first(displacement, along);
     let mut torque = vec![-z];
     for (index, (before, after)) in along.position.iter().zip(along.position.iter().skip(1)).enumerate() {
         let way = after - before;

@@ -89,16 +89,21 @@ impl CandidateLaw for Hysteresis {
     }
 }
 
-/// Returns −z of Dahl's law along a motion: exact between samples if the motion does not reverse.
-fn bending(displacement: f64, along: &Along<'_>) -> Vec<f64> {
-    let position = along.position;
+/// Returns z of Dahl's law at the first sample of a motion: that of a steady swing, and none where a record begins.
+pub(super) fn bent_at_first(displacement: f64, along: &Along<'_>) -> f64 {
     let rest = along.nominal.rest_angle + along.facts.rest_moved;
-    let mut z = match (position.first(), along.velocity.first()) {
+    match (along.position.first(), along.velocity.first()) {
         (Some(position), Some(velocity)) if !along.first => {
             bent(position - rest, velocity / along.facts.frequency, displacement).z
         }
         _ => 0.0,
-    };
+    }
+}
+
+/// Returns −z of Dahl's law along a motion: exact between samples if the motion does not reverse.
+fn bending(displacement: f64, along: &Along<'_>) -> Vec<f64> {
+    let position = along.position;
+    let mut z = bent_at_first(displacement, along);
     let mut torque = vec![-z];
     for (before, after) in position.iter().zip(position.iter().skip(1)) {
         let way = after - before;
