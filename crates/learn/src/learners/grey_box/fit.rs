@@ -6,6 +6,7 @@ use crate::LearnError;
 use crate::flow::Running;
 use least_squares::{LeastSquares, Linearized, Method, Minimum};
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 /// Parameters of a law, and the start state of each piece.
@@ -28,6 +29,28 @@ pub(super) struct Runs<'a> {
     pub(super) free: &'a [usize],
     /// Typical size of the observed quantity.
     pub(super) spread: f64,
+    /// What is known of the hidden states at the starts.
+    pub(super) prior: Option<Prior>,
+}
+
+/// What is known of a hidden state before a stretch is seen: its mean and standard deviation, and how far the law is off.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Prior {
+    pub(super) mean: f64,
+    pub(super) spread: f64,
+    /// Root mean square error of the law's runs.
+    pub(super) error: f64,
+}
+
+impl Prior {
+    /// Returns the prior of a law's motions with a root mean square error; `None` if the law has no hidden state.
+    pub(super) fn of(motions: &[Motion], error: f64) -> Option<Self> {
+        let all = || motions.iter().flat_map(|motion| motion.hidden.iter().copied());
+        let count = all().count().max(1) as f64;
+        let mean = all().sum::<f64>() / count;
+        let spread = (all().map(|hidden| (hidden - mean).powi(2)).sum::<f64>() / count).sqrt();
+        (spread > 0.0 && error.is_finite()).then_some(Self { mean, spread, error })
+    }
 }
 
 /// Number that is fitted: its place, and its change at a step of one.
@@ -65,7 +88,7 @@ impl Runs<'_> {
         self.pieces.iter().zip(&point.starts).map(run).collect()
     }
 
-    /// Returns predicted minus observed values, in units of the spread.
+    /// Returns predicted minus observed values, in units of the spread, and after them what contradicts the prior.
     fn residuals(&self, point: &Point) -> DVector<f64> {
         let motions = self.motions(point);
         let pairs = self.pieces.iter().zip(&motions);
@@ -73,7 +96,11 @@ impl Runs<'_> {
             let pairs = motion.positions.iter().zip(&piece.values);
             pairs.map(|(predicted, observed)| (predicted - observed) / self.spread).collect::<Vec<f64>>()
         };
-        DVector::from_vec(pairs.flat_map(of).collect())
+        let starts = point.starts.iter().zip(self.prior);
+        let known = starts.map(|(start, prior)| {
+            prior.error / self.spread * (self.law.hidden(*start) - prior.mean) / prior.spread
+        });
+        DVector::from_vec(pairs.flat_map(of).chain(known).collect())
     }
 
     /// Fits the free parameters and all start states. `observe` gets the number of steps and the root mean square

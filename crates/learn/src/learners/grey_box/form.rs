@@ -33,7 +33,7 @@ impl Form {
             "polynomial-3" => Self::Polynomial(Polynomial::new(3, data)),
             "polynomial-5" => Self::Polynomial(Polynomial::new(5, data)),
             "bouc-wen" => Self::BoucWen(BoucWen {}),
-            "two-tanks" => Self::TwoTanks(TwoTanks {}),
+            "two-tanks" => Self::TwoTanks(TwoTanks::new(data)),
             _ => return None,
         })
     }

@@ -12,6 +12,7 @@
 
 mod bouc_wen;
 mod choice;
+mod curve;
 mod duffing;
 mod fit;
 mod form;
@@ -29,7 +30,7 @@ use crate::judge::validation_squares;
 use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Step};
 use choice::{Candidate, simplest};
 use estimator::Reached;
-use fit::{Point, Runs};
+use fit::{Point, Prior, Runs};
 use form::{Form, NAMES};
 use law::Guess;
 use least_squares::StopReason;
@@ -102,8 +103,8 @@ struct Search<'a> {
     form: Form,
     guess: Guess,
     point: Point,
-    /// Typical hidden state.
-    hidden: f64,
+    /// What the latest fit tells of the hidden state.
+    prior: Option<Prior>,
     /// Root mean square error of the latest fit.
     rms: f64,
     reached: Reached,
@@ -162,8 +163,8 @@ impl<'a> Search<'a> {
         let start = |part| form.law().start(part, data.period_s, guess.hidden);
         let point =
             Point { parameters: guess.parameters.clone(), starts: data.train.iter().map(start).collect() };
-        let (hidden, rms, reached) = (guess.hidden, f64::INFINITY, Reached::BudgetSpent);
-        Self { name, point, hidden, rms, reached, form, guess }
+        let (rms, reached) = (f64::INFINITY, Reached::BudgetSpent);
+        Self { name, point, prior: None, rms, reached, form, guess }
     }
 
     /// Returns the law as a model. `validation` is the error on the validation part before the law was fitted to it.
@@ -175,8 +176,9 @@ impl<'a> Search<'a> {
             spread: data.scale.position,
             unit: data.unit.clone(),
             validation,
+            prior: self.prior,
         };
-        GreyBox::new(about, self.point.parameters.clone(), self.hidden)
+        GreyBox::new(about, self.point.parameters.clone())
     }
 }
 
@@ -219,6 +221,7 @@ impl Settings {
             state_sizes: law.sizes(data),
             free: if is_last { &all } else { &search.guess.first },
             spread: data.scale.position,
+            prior: None,
         };
         let starts = search.point.starts.iter().take(pieces.len()).copied().collect();
         let from = Point { starts, parameters: search.point.parameters.clone() };
@@ -238,9 +241,8 @@ impl Settings {
         }
         trace.context.check()?;
         let count: usize = pieces.iter().map(|piece| piece.values.len()).sum();
-        let motions = runs.motions(&found);
-        search.hidden = motions.iter().map(|motion| motion.hidden).sum::<f64>() / count.max(1) as f64;
         search.rms = data.scale.position * (minimum.loss / count.max(1) as f64).sqrt();
+        search.prior = Prior::of(&runs.motions(&found), search.rms);
         let converged = matches!(minimum.reason, StopReason::Settled | StopReason::Stationary);
         search.reached = if converged { Reached::Converged } else { Reached::BudgetSpent };
         search.point.starts.iter_mut().zip(found.starts).for_each(|(own, found)| *own = found);

@@ -1,6 +1,6 @@
 //! Grey-box law as a model.
 
-use super::fit::{Point, Runs};
+use super::fit::{Point, Prior, Runs};
 use super::form::Form;
 use super::law::State;
 use super::run::Piece;
@@ -17,8 +17,6 @@ pub(super) const ID: &str = "grey-box";
 pub(super) struct GreyBox {
     pub(super) about: About,
     pub(super) parameters: Vec<f64>,
-    /// Typical hidden state.
-    pub(super) hidden: f64,
     pub(super) coefficients: Vec<Coefficient>,
 }
 
@@ -32,6 +30,9 @@ pub(super) struct About {
     pub(super) spread: f64,
     /// Unit of the positions.
     pub(super) unit: String,
+    /// What is known of the hidden state at a start, if the law has one.
+    #[serde(default)]
+    pub(super) prior: Option<Prior>,
     /// Error on the validation part of the law as it was chosen, if it was fitted to that part afterwards.
     #[serde(default)]
     pub(super) validation: Option<f64>,
@@ -42,13 +43,13 @@ const MOST_STEPS: u64 = 40;
 
 impl GreyBox {
     /// Builds a model from its numbers.
-    pub(super) fn new(about: About, parameters: Vec<f64>, hidden: f64) -> Self {
+    pub(super) fn new(about: About, parameters: Vec<f64>) -> Self {
         let law = about.form.law();
         let named = law.names(&about.unit).into_iter().zip(law.stated(&parameters));
         let coefficient =
             |((name, unit), value)| Coefficient { name, value, unit, std_error: None, inclusion: None };
         let coefficients = named.map(coefficient).collect();
-        Self { about, parameters, hidden, coefficients }
+        Self { about, parameters, coefficients }
     }
 
     /// Restores a model from its file.
@@ -63,14 +64,13 @@ impl GreyBox {
             let problem = format!("{} parameters where the law has {expected}", parameters.len());
             return Err(LearnError::Stored { problem });
         }
-        // A file without the number is one of a law without a hidden state.
-        let hidden = stored.tensor("hidden")?.values.first().copied().unwrap_or(0.0);
-        Ok(Self::new(about, parameters, hidden))
+        Ok(Self::new(about, parameters))
     }
 
-    /// Fits the state at the first sample of a past.
+    /// Estimates the state at the first sample of a past: the most probable one, where a short past tells little of a
+    /// hidden state. The law's own error, not only the sensor's noise, stands between its runs and the samples.
     pub(super) fn start(&self, past: &Trajectory) -> Result<State, LearnError> {
-        let About { form, running, state_sizes, spread, .. } = &self.about;
+        let About { form, running, state_sizes, spread, prior, .. } = &self.about;
         let piece = Piece::new(past, running)?;
         let runs = Runs {
             law: form.law(),
@@ -80,8 +80,11 @@ impl GreyBox {
             state_sizes: *state_sizes,
             free: &[],
             spread: *spread,
+            prior: *prior,
         };
-        let start = form.law().start(past, running.period_s, self.hidden);
+        // A law without a hidden state starts without one.
+        let hidden = prior.map_or(0.0, |prior| prior.mean);
+        let start = form.law().start(past, running.period_s, hidden);
         let from = Point { parameters: self.parameters.clone(), starts: vec![start] };
         let (found, _) = runs.fit(&from, MOST_STEPS, |_, _| ControlFlow::Continue(()))?;
         Ok(found.starts.first().copied().unwrap_or(start))
@@ -132,7 +135,7 @@ impl Model for GreyBox {
             shape: vec![values.len()],
             values: values.to_vec(),
         };
-        let tensors = vec![tensor("hidden", &[self.hidden]), tensor("parameters", &self.parameters)];
+        let tensors = vec![tensor("parameters", &self.parameters)];
         Stored::new(ID, &self.about, tensors).ok()
     }
 }

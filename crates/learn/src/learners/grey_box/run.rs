@@ -34,8 +34,8 @@ impl Piece {
 pub(super) struct Motion {
     /// Observed quantity at each time. From a divergence on, the bound.
     pub(super) positions: Vec<f64>,
-    /// Sum of the hidden states over the times.
-    pub(super) hidden: f64,
+    /// Hidden state at each time. From a divergence on there is none.
+    pub(super) hidden: Vec<f64>,
     /// Time at which the run diverged, in seconds after its start.
     pub(super) diverged_s: Option<f64>,
 }
@@ -50,7 +50,7 @@ impl<L: Law> Runnable for L {
     fn motion(&self, parameters: &[f64], start: State, piece: &Piece, running: &Running) -> Motion {
         let mut state = self.limited(parameters, start);
         let first = self.observed(parameters, state);
-        let mut found = Motion { positions: vec![first], hidden: self.hidden(state), diverged_s: None };
+        let mut found = Motion { positions: vec![first], hidden: vec![self.hidden(state)], diverged_s: None };
         found.positions.reserve(piece.times_s.len());
         let pairs = piece.times_s.iter().zip(piece.times_s.iter().skip(1)).enumerate();
         for (number, (from, to)) in pairs {
@@ -65,7 +65,7 @@ impl<L: Law> Runnable for L {
                 return found;
             }
             found.positions.push(observed);
-            found.hidden += self.hidden(state);
+            found.hidden.push(self.hidden(state));
         }
         found
     }
