@@ -103,6 +103,36 @@ fn a_sequence_model_beats_the_autoregression_and_predicts_a_record() {
     assert!(number(&said, "/free_run_rmse") < error("arx"), "{said}");
 }
 
+/// A learner that begins with random weights is trained with several seeds; the row is that of the study's own seed.
+#[test]
+fn several_seeds_of_a_network_stand_beside_the_row_of_the_first() {
+    let quick = ["configs/learn/neural-ode.toml", "learn.max_steps=3", "learn.baselines=arx"];
+    let redrawn = [&quick[..], &["learn.seeds=3", "learn.redrawn=neural-ode"]].concat();
+    let (code, result, folder) = result(&redrawn);
+    assert_eq!(code, 0, "{result}");
+    let several = row(&result, "neural-ode");
+    let draws = several["draws"].as_array().unwrap();
+    let errors: Vec<f64> = draws.iter().map(|draw| number(draw, "/free_run_rmse")).collect();
+    assert_eq!(draws.iter().map(|draw| number(draw, "/seed")).collect::<Vec<f64>>(), [0.0, 1.0, 2.0]);
+    assert!(errors[0] != errors[1] && errors[1] != errors[2], "{errors:?}");
+    let (_, alone, plain) = crate::support::result(&quick);
+    let alone = row(&alone, "neural-ode");
+    assert_eq!(several["test"], alone["test"]);
+    assert_eq!(errors[0], number(alone, "/test/free_run_rmse"));
+    assert!(
+        alone.get("draws").is_none_or(Value::is_null) && row(&result, "arx").get("draws").is_none(),
+        "{result}"
+    );
+    // The page's tables show the range of the seeds, such as (0.12 to 0.34).
+    let ranges = |folder: &Path| {
+        let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
+        let is_number = |text: &str| text.len() < 20 && text.parse::<f64>().is_ok();
+        page.split('(').filter(|text| text.split_once(" to ").is_some_and(|(low, _)| is_number(low))).count()
+    };
+    assert_eq!(ranges(plain.path()), 0);
+    assert!(ranges(folder.path()) > 0);
+}
+
 /// Every device computes at least in single precision: a training in it equals that in doubles up to
 /// rounding.
 #[test]
