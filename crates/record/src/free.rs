@@ -3,6 +3,7 @@
 use crate::FEWEST_SAMPLES;
 use crate::record::Record;
 use crate::recursion::{between_strikes, is_one_motion};
+use crate::spikes::without_spikes;
 use crate::statistics::{extremes, noise_level, upper_median};
 
 /// A free swing within a record.
@@ -58,8 +59,6 @@ const GAP: f64 = 0.25;
 const REST: f64 = 0.1;
 /// Number of half swings within which a motion that something begins at once is large.
 const FIRST: usize = 3;
-/// Deviation from rest, in standard deviations of the noise, from which something moves.
-const AT_REST: f64 = 6.0;
 
 /// A turning point of a record.
 #[derive(Debug, Clone, Copy)]
@@ -80,6 +79,8 @@ pub(crate) fn free_swings(record: &Record) -> Vec<FreeSwing> {
     if record.input().is_some() {
         return Vec::new();
     }
+    // A wrong value looks like a strike and a stop.
+    let record = &record.clone().with_values(without_spikes(record.values()));
     let values = record.values();
     let (mut turns, least) = turning_points(values);
     if turns.len() <= FEWEST {
@@ -141,28 +142,6 @@ fn after_rest(record: &Record, half_swings: usize) -> Vec<FreeSwing> {
     let is_rest = held as f64 > REST * samples as f64;
     let motion = FreeSwing { samples: [held, samples - 1], half_swings };
     if is_rest && motion.is_record() { vec![motion] } else { Vec::new() }
-}
-
-impl Record {
-    /// Returns the number of samples at the beginning in which nothing moves: those before two in a row that differ from
-    /// the mean of all before by more than six times the noise or steps of the sensor. 0 if they are more than half of
-    /// the record.
-    #[must_use]
-    pub fn samples_at_rest(&self) -> usize {
-        let values = self.values();
-        let far = AT_REST * noise_level(values).max(self.quantum());
-        let mut sum = 0.0;
-        let mut beyond = 0;
-        let moved = values.iter().enumerate().position(|(at, value)| {
-            // The first sample is its own mean.
-            let mean = if at > 0 { sum / at as f64 } else { *value };
-            sum += value;
-            beyond = if (value - mean).abs() > far { beyond + 1 } else { 0 };
-            beyond == 2
-        });
-        // A record without motion begins with its first sample.
-        moved.map(|at| at - 1).filter(|held| 2 * held < values.len()).unwrap_or(0)
-    }
 }
 
 /// Returns the turning points of a series: extremes from which it turns back by eight times its noise and a
@@ -446,6 +425,15 @@ mod tests {
             let found = parts(&again);
             assert!(found.len() == 2 && (found[1][0] - 12.0).abs() < 0.7, "{found:?}");
         }
+    }
+
+    /// Regression: each wrong value was a strike and a stop, and the longest part between two of them was read.
+    #[test]
+    fn wrong_values_are_no_strikes() {
+        // One value in forty, in no order.
+        let wrong = |time: f64| (time * RATE).round() as u64 * 7_919 % 6_007 % 1_000 < 25;
+        let found = parts(&record(30.0, 0.005, |time| decay(time) + if wrong(time) { 0.8 } else { 0.0 }));
+        assert!(found.is_empty(), "{found:?}");
     }
 
     /// Regression: a hold that is longer than the swing counted as motion, and the swing was read with the lift.

@@ -36,6 +36,7 @@ mod recursion;
 mod roles;
 mod roughness;
 mod runs;
+mod spikes;
 mod stamps;
 mod statement;
 mod statistics;

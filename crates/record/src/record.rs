@@ -5,6 +5,7 @@
 use crate::FEWEST_SAMPLES;
 use crate::error::Fault;
 use crate::lattice::Lattice;
+use crate::statistics::noise_level;
 use serde::{Deserialize, Serialize};
 
 /// Observed quantity: what the sensor reports.
@@ -69,6 +70,9 @@ pub(crate) fn beside(rows: &[usize], times: &[f64], row: usize) -> Option<[(usiz
     Some([at(after.checked_sub(1)?)?, at(after)?])
 }
 
+/// Deviation from rest, in standard deviations of the noise, from which something moves.
+const AT_REST: f64 = 6.0;
+
 impl Record {
     /// Creates a record from columns in SI units.
     ///
@@ -132,6 +136,32 @@ impl Record {
         let increase = rows.iter().zip(rows.iter().skip(1)).all(|(one, next)| one < next);
         let usable = rows.len() == self.len() && increase;
         Self { rows: usable.then_some(rows), ..self }
+    }
+
+    /// Returns the number of samples at the beginning in which nothing moves: those before two in a row that differ from
+    /// the mean of all before by more than six times the noise or steps of the sensor. 0 if they are more than half of
+    /// the record.
+    #[must_use]
+    pub fn samples_at_rest(&self) -> usize {
+        let values = self.values();
+        let far = AT_REST * noise_level(values).max(self.quantum());
+        let mut sum = 0.0;
+        let mut beyond = 0;
+        let moved = values.iter().enumerate().position(|(at, value)| {
+            // The first sample is its own mean.
+            let mean = if at > 0 { sum / at as f64 } else { *value };
+            sum += value;
+            beyond = if (value - mean).abs() > far { beyond + 1 } else { 0 };
+            beyond == 2
+        });
+        // A record without motion begins with its first sample.
+        moved.map(|at| at - 1).filter(|held| 2 * held < values.len()).unwrap_or(0)
+    }
+
+    /// Returns the record with other values, as many.
+    pub(crate) fn with_values(self, values: Vec<f64>) -> Self {
+        debug_assert_eq!(values.len(), self.len(), "a value for every stamp");
+        Self { values, ..self }
     }
 
     /// Returns the record with the inputs at rows that hold an input but no value. Only rows that lie between

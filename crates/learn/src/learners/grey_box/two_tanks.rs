@@ -46,19 +46,10 @@ struct Tanks<'a> {
 
 /// Takes a law's parameters apart; `None` for a list that is too short.
 fn tanks(parameters: &[f64]) -> Option<Tanks<'_>> {
-    let [pump, upper_root, lower_root, upper_rim, share, lower_rim, steps @ ..] = parameters else {
+    let &[pump, upper_root, lower_root, upper_rim, share, lower_rim, ref steps @ ..] = parameters else {
         return None;
     };
-    let [pump, upper_root, lower_root] = [*pump, *upper_root, *lower_root];
-    Some(Tanks {
-        pump,
-        upper_root,
-        lower_root,
-        upper_rim: *upper_rim,
-        share: *share,
-        lower_rim: *lower_rim,
-        steps,
-    })
+    Some(Tanks { pump, upper_root, lower_root, upper_rim, share, lower_rim, steps })
 }
 
 impl TwoTanks {
@@ -66,11 +57,12 @@ impl TwoTanks {
     pub(super) fn new(data: &DataSet) -> Self {
         let mut all: Vec<f64> = data.train.iter().flat_map(|part| part.values().iter().copied()).collect();
         all.sort_by(f64::total_cmp);
-        let last = all.len().saturating_sub(1);
-        let mut readings: Vec<f64> =
-            (0..=PIECES).filter_map(|at| all.get(at * last / PIECES).copied()).collect();
+        let (Some(low), Some(high)) = (all.first(), all.last()) else { return Self { readings: Vec::new() } };
         // Where a sensor stays at one reading, it fills several parts.
-        let least = 0.1 / PIECES as f64 * (all.last().unwrap_or(&0.0) - all.first().unwrap_or(&0.0));
+        let least = 0.1 / PIECES as f64 * (high - low);
+        let last = all.len() - 1;
+        let parts = (0..=PIECES).filter_map(|at| all.get(at * last / PIECES).copied());
+        let mut readings: Vec<f64> = parts.collect();
         readings.dedup_by(|next, own| *next - *own <= least);
         Self { readings }
     }
