@@ -32,9 +32,9 @@ pub(crate) fn without_spikes(values: &[f64]) -> Vec<f64> {
     let mut calm = values.to_vec();
     for pair in right.windows(2) {
         let (from, to) = (pair[0], pair[1]);
-        for at in from + 1..to {
-            let share = (at - from) as f64 / (to - from) as f64;
-            calm[at] = values[from] + share * (values[to] - values[from]);
+        for (after, slot) in calm[from + 1..to].iter_mut().enumerate() {
+            let share = (after + 1) as f64 / (to - from) as f64;
+            *slot = values[from] + share * (values[to] - values[from]);
         }
     }
     calm
