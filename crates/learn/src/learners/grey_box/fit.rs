@@ -29,11 +29,11 @@ pub(super) struct Runs<'a> {
     pub(super) free: &'a [usize],
     /// Typical size of the observed quantity.
     pub(super) spread: f64,
-    /// What is known of the hidden states at the starts.
+    /// Prior of the hidden states at the starts.
     pub(super) prior: Option<Prior>,
 }
 
-/// What is known of a hidden state before a stretch is seen: its mean and standard deviation, and how far the law is off.
+/// Prior of a hidden state before a stretch is seen: its mean and standard deviation, and how far the law is off.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Prior {
     pub(super) mean: f64,

@@ -103,7 +103,7 @@ struct Search<'a> {
     form: Form,
     guess: Guess,
     point: Point,
-    /// What the latest fit tells of the hidden state.
+    /// Prior of the hidden state by the latest fit.
     prior: Option<Prior>,
     /// Root mean square error of the latest fit.
     rms: f64,

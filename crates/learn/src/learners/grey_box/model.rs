@@ -30,7 +30,7 @@ pub(super) struct About {
     pub(super) spread: f64,
     /// Unit of the positions.
     pub(super) unit: String,
-    /// What is known of the hidden state at a start, if the law has one.
+    /// Prior of the hidden state at a start, if the law has one.
     #[serde(default)]
     pub(super) prior: Option<Prior>,
     /// Error on the validation part of the law as it was chosen, if it was fitted to that part afterwards.
