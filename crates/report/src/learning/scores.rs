@@ -43,7 +43,8 @@ fn of_method(row: &LearnRow, problem: &LearnProblem) -> ScoreRow {
             own(significant(row.seconds, 2)),
         ];
         let stated = stated.map(Option::unwrap_or_default);
-        [number(test.free_run_rmse)].into_iter().chain(stated).chain(last).collect()
+        let free_run = ranged(row, |draw| draw.free_run_rmse, number(test.free_run_rmse));
+        [free_run].into_iter().chain(stated).chain(last).collect()
     });
     let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());
     ScoreRow { title: row.title.clone(), is_marked: row.kind == LearnKind::Learner, cells, reason }

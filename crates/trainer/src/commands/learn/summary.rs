@@ -121,6 +121,14 @@ fn cells(row: &LearnRow) -> Vec<String> {
     // An ablation is a free run of a model that was trained already: it has no one-step error and no duration
     // of its own.
     let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
+    // Over several seeds, the median and the range.
+    let free_run = |own: Option<f64>| match row.range(|draw| draw.free_run_rmse) {
+        Some(all) => {
+            let [least, median, most] = all.map(two_digits);
+            format!("{median} ({least} to {most})")
+        }
+        None => number(own),
+    };
     let mut cells = vec![named(row)];
     match &row.test {
         None => cells.extend(vec![
@@ -131,7 +139,7 @@ fn cells(row: &LearnRow) -> Vec<String> {
             String::new(),
         ]),
         Some(test) => cells.extend([
-            number(test.free_run_rmse),
+            free_run(test.free_run_rmse),
             number(test.over_noise),
             format!("{:.2}", test.horizon_s),
             own(number(test.one_step_rmse)),
