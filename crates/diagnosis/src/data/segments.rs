@@ -133,7 +133,7 @@ impl Data {
     /// Returns the largest stride that leaves enough samples for a search, in a period and in the shortest
     /// segment.
     fn spare(&self) -> usize {
-        let per_period = TAU / (self.facts.frequency * self.facts.interval);
+        let per_period = TAU / (self.facts.frequency * self.interval());
         let Some(fewest) = self.segments.iter().map(|s| s.times.len()).min() else { return 1 };
         ((per_period / SEARCHED_PER_PERIOD) as usize).min(fewest / FEWEST_PER_SEGMENT).max(1)
     }
@@ -486,5 +486,27 @@ fn guess(
         (Quantity::Acceleration, true) => [rest - cosine / (omega * omega), -sine / omega],
         // Without a swing, an acceleration tells the spring's pull but not the speed.
         (Quantity::Acceleration, false) => [rest - offset / (omega * omega), 0.0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SEARCHED_PER_PERIOD, cut};
+    use crate::Observations;
+    use record::{Clock, ClockChoice, Quantity, Record};
+
+    /// 275 samples a period, as at 600 Hz, of which there are twice as many as a search takes.
+    #[test]
+    fn data_strided_twice_still_sample_a_swing_well() {
+        let times: Vec<f64> = (0..40_000).map(|at| f64::from(at) / 600.0).collect();
+        let values = times.iter().map(|t| 0.3 * libm::exp(-0.02 * t) * libm::cos(13.7 * t)).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let nominal = dynamics::Nominal::new(1.0, 0.04, 13.7 * 13.7, 0.0).unwrap();
+        let kept = [vec![true; 40_000]];
+        let all = cut(&[Observations::new(&record, &clock)], &kept, &(&nominal).into()).unwrap();
+        let searched = all.sparser(10_000).strided();
+        let per_period = std::f64::consts::TAU / 13.7 / searched.interval();
+        assert!((SEARCHED_PER_PERIOD..1.5 * SEARCHED_PER_PERIOD).contains(&per_period), "{per_period}");
     }
 }

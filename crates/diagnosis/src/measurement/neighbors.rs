@@ -1,5 +1,7 @@
 //! Samples compared with the motion around them, and the white noise that follows.
 
+#![allow(clippy::indexing_slicing, reason = "neighbors are places among the points")]
+
 use crate::data::observations::Observations;
 use crate::noise::statistics::median;
 
@@ -42,6 +44,9 @@ pub(crate) struct Distance {
     pub(crate) spread: f64,
     /// Largest distance that rounding by half a step can cause, for a step of 1.
     pub(crate) rounding: f64,
+    /// Smallest distance from the parabolas through three of the neighbors: small beside a wrong sample and at a step, where
+    /// the sample agrees with the others once a neighbor is left out.
+    pub(crate) from_parabolas: f64,
 }
 
 impl Distance {
@@ -50,21 +55,16 @@ impl Distance {
     }
 }
 
-/// Returns the distances of all samples from cubics through the four neighbors once and twice `spacing` away;
-/// `None` near the ends and where samples in between are missing.
+/// Returns the distances of all samples from cubics through the four neighbors once and twice `spacing` away, or through
+/// more on one side near an end; `None` where samples in between are missing.
 pub(crate) fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Distance>> {
-    let even = 4.0 * (spacing as f64 * interval).powi(4);
-    let at = |index: Option<usize>| index.and_then(|index| points.get(index)).copied();
     (0..points.len())
         .map(|index| {
-            let nodes = [
-                at(index.checked_sub(2 * spacing))?,
-                at(index.checked_sub(spacing))?,
-                at(Some(index + spacing))?,
-                at(Some(index + 2 * spacing))?,
-            ];
-            let (_, time, value) = at(Some(index))?;
+            let places = neighbors(index, spacing, points.len())?;
+            let nodes = places.map(|place| points[place]);
+            let (_, time, value) = points[index];
             let product: f64 = nodes.iter().map(|node| (time - node.1).abs()).product();
+            let even: f64 = places.iter().map(|place| place.abs_diff(index) as f64 * interval).product();
             if product.is_nan() || product > WIDE * even {
                 return None;
             }
@@ -81,7 +81,34 @@ pub(crate) fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<
                 value: -sum,
                 spread: squares.sqrt(),
                 rounding: 0.5 * sizes,
+                from_parabolas: from_parabolas(&nodes, time, value),
             })
         })
         .collect()
+}
+
+/// Returns the places of a sample's four neighbors at a spacing, two on either side if there are; `None` if there are no four.
+fn neighbors(index: usize, spacing: usize, count: usize) -> Option<[usize; 4]> {
+    let before = (index / spacing).min(4);
+    let after = (count.checked_sub(index + 1)? / spacing).min(4);
+    let from_before = before.min(2.max(4_usize.saturating_sub(after)));
+    let place = |at: usize| match at < from_before {
+        true => index - (from_before - at) * spacing,
+        false => index + (at - from_before + 1) * spacing,
+    };
+    (before + after >= 4).then(|| [0, 1, 2, 3].map(place))
+}
+
+/// Returns the smallest distance of a value from the parabolas through all but one of its neighbors.
+fn from_parabolas(nodes: &[Point; 4], time: f64, value: f64) -> f64 {
+    let without = |left_out: usize| {
+        let through = || nodes.iter().enumerate().filter(move |(own, _)| *own != left_out);
+        let part = |(own, node): (usize, &Point)| {
+            let others = through().filter(|(other, _)| *other != own);
+            let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
+            weight * (node.2 - value)
+        };
+        through().map(part).sum::<f64>().abs()
+    };
+    (0..nodes.len()).map(without).fold(f64::INFINITY, f64::min)
 }

@@ -21,10 +21,15 @@ const BLOCK: usize = 64;
 /// equal (1); for a bend of the motion the ratio is 2, for a curve more.
 const BEND: f64 = 1.35;
 
-/// Largest ratio of a direct neighbor's distance, in its own noise, to that of the sample itself. A wrong
-/// sample moves the neighbors' distances by 2/3 of its error; on both sides of a step the distances are
-/// equal.
-const STEP: f64 = 0.85;
+/// Least ratio of the distance at double spacing, and of that from a parabola through three neighbors, to the distance from
+/// the cubic through all four. For a wrong sample all are equal (1); beside one, the parabola without it is met (0), between
+/// two the cubic at double spacing (0); beside a step or two wrong samples the parabola's ratio is 1/3.
+const ALONE: f64 = 0.5;
+
+/// Largest number of samples from a wrong sample to another that hides it, and the number on either side of a sample by which
+/// it is compared where that one is left out.
+const REACH: usize = 3;
+const BESIDE: usize = 6;
 
 /// Share of outliers beyond which they are no exceptions, and the number of standard deviations of a count by
 /// which it must be exceeded, since a larger share of few samples may be wrong by chance.
@@ -43,7 +48,8 @@ const ROUNDS: usize = 3;
 /// least the rounding of a step. A sample is wrong if the distance exceeds the limit that any of all samples
 /// reaches by chance with a probability of 0.001, plus the largest distance that rounding can add. It also
 /// has to be isolated: bends (end stops, reversals under friction) grow with the spacing of the neighbors,
-/// and steps show on both sides.
+/// and steps show on both sides. Of two neighboring wrong samples, each hides the other, and both are compared
+/// with the samples around the pair.
 ///
 /// If bursts have lost samples, the places of samples within a burst are guesses, and no sample is called
 /// wrong.
@@ -71,41 +77,81 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     if dropped > most + BY_CHANCE * most.sqrt() { everything } else { kept }
 }
 
-/// Returns the indices of further wrong samples, given the samples that are still kept.
+/// Returns the indices of further wrong samples, given the samples that are still kept: those that are wrong beside all others,
+/// and pairs of which each is wrong where the other is left out, since a wrong neighbor hides a wrong sample.
 fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
     let points = points(observations, kept);
     let interval = interval(observations);
     let near = distances(&points, 1, interval);
     let far = distances(&points, 2, interval);
-    let step = observations.step();
-    let sizes: Vec<f64> = near.iter().flatten().map(Distance::in_noise).collect();
-    let whole = (OF_MEDIAN * median(&sizes)).max(step / 12.0_f64.sqrt());
-    let blocks: Vec<f64> = near
-        .chunks(BLOCK)
-        .map(|block| OF_MEDIAN * median(&block.iter().flatten().map(Distance::in_noise).collect::<Vec<_>>()))
-        .collect();
-    let around = |index: usize| {
-        let block = index / BLOCK;
-        let own = &blocks[block.saturating_sub(1)..(block + 2).min(blocks.len())];
-        own.iter().copied().fold(whole, f64::max)
-    };
-    let limit = normal_above(0.5 * FALSE_ALARM / points.len().max(1) as f64);
-    let beside = |index: usize| {
-        let neighbors = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
-        neighbors.filter_map(|index| near.get(index)?.as_ref()).map(Distance::in_noise)
-    };
-    let mut wrong = Vec::new();
-    for (index, ((own, far), point)) in near.iter().zip(&far).zip(&points).enumerate() {
-        let (Some(own), Some(far)) = (own, far) else { continue };
-        let outlying = own.value.abs() > limit * around(index) * own.spread + own.rounding * step;
-        let straight = far.value * own.value > 0.0
-            && far.value.abs() < BEND * own.value.abs() + far.rounding.max(own.rounding) * step;
-        let sides = beside(index).fold(0.0, f64::max);
-        if outlying && straight && sides < STEP * own.in_noise() {
-            wrong.push(point.0);
+    let limits = Limits::new(&near, observations.step());
+    let outlying: Vec<usize> = (0..near.len()).filter(|at| limits.outlying(&near, *at, *at)).collect();
+    let mut wrong: Vec<usize> =
+        outlying.iter().copied().filter(|at| limits.isolated(&near, &far, *at)).collect();
+    for one in outlying {
+        // The other one may lie on the cubic through its neighbors, of which the first is one.
+        let beside = one.saturating_sub(REACH)..(one + REACH + 1).min(points.len());
+        for other in beside.filter(|other| *other != one) {
+            let wrong_without = |own: usize, other: usize| {
+                let from = own.saturating_sub(BESIDE);
+                let window = from..(own + BESIDE + 1).min(points.len());
+                let beside: Vec<_> = window.filter(|at| *at != other).map(|at| points[at]).collect();
+                let at = own - from - usize::from(other < own);
+                let (near, far) = (distances(&beside, 1, interval), distances(&beside, 2, interval));
+                limits.outlying(&near, at, own) && limits.isolated(&near, &far, at)
+            };
+            if wrong_without(one, other) && wrong_without(other, one) {
+                wrong.extend([one, other]);
+            }
         }
     }
-    wrong
+    wrong.into_iter().map(|at| points[at].0).collect()
+}
+
+/// Scales of the distances in a record.
+struct Limits {
+    /// Number of standard deviations of a distance that noise reaches by chance.
+    deviations: f64,
+    step: f64,
+    /// Standard deviation of the noise in the whole record and by block.
+    whole: f64,
+    blocks: Vec<f64>,
+}
+
+impl Limits {
+    fn new(near: &[Option<Distance>], step: f64) -> Self {
+        let of = |distances: &[Option<Distance>]| {
+            OF_MEDIAN * median(&distances.iter().flatten().map(Distance::in_noise).collect::<Vec<_>>())
+        };
+        Self {
+            deviations: normal_above(0.5 * FALSE_ALARM / near.len().max(1) as f64),
+            step,
+            whole: of(near).max(step / 12.0_f64.sqrt()),
+            blocks: near.chunks(BLOCK).map(of).collect(),
+        }
+    }
+
+    /// Returns the standard deviation of the noise around a sample of the record.
+    fn around(&self, sample: usize) -> f64 {
+        let block = sample / BLOCK;
+        let own = &self.blocks[block.saturating_sub(1)..(block + 2).min(self.blocks.len())];
+        own.iter().copied().fold(self.whole, f64::max)
+    }
+
+    /// Returns whether the distance `at` an index is larger than noise and rounding make it at a sample.
+    fn outlying(&self, near: &[Option<Distance>], at: usize, sample: usize) -> bool {
+        near[at].is_some_and(|own| {
+            own.value.abs() > self.deviations * self.around(sample) * own.spread + own.rounding * self.step
+        })
+    }
+
+    /// Returns whether the distance at an index neither grows with the spacing nor comes from a neighbor.
+    fn isolated(&self, near: &[Option<Distance>], far: &[Option<Distance>], at: usize) -> bool {
+        let (Some(own), Some(far)) = (near[at], far[at]) else { return false };
+        let straight = far.value * own.value > ALONE * own.value * own.value
+            && far.value.abs() < BEND * own.value.abs() + far.rounding.max(own.rounding) * self.step;
+        straight && own.from_parabolas > ALONE * own.value.abs()
+    }
 }
 
 #[cfg(test)]
@@ -247,6 +293,38 @@ mod tests {
             errors.iter().zip(&kept).filter(|(error, kept)| error.abs() < 2.0 * NOISE && !**kept).count();
         assert!(found as f64 >= 0.9 * large as f64, "{found} of {large}");
         assert_eq!(blamed, 0);
+    }
+
+    /// Errors of 60 and of 40 times the noise in two samples next to each other or with one or two between, of equal and of
+    /// opposite sign.
+    #[test]
+    fn wrong_samples_in_pairs_are_found_and_none_between() {
+        let times = even(6500);
+        let noise = normal(6500, 9);
+        let starts: Vec<usize> = (100..6400).step_by(397).collect();
+        for (apart, sign) in [(1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0), (3, 1.0), (3, -1.0)] {
+            let mut values: Vec<f64> = times.iter().zip(&noise).map(|(t, noise)| swing(*t) + noise).collect();
+            for start in &starts {
+                values[*start] += 60.0 * NOISE;
+                values[start + apart] += sign * 40.0 * NOISE;
+            }
+            let kept = kept(&observed(times.clone(), values));
+            let left_out: Vec<usize> = (0..6500).filter(|at| !kept[*at]).collect();
+            let wrong: Vec<usize> = starts.iter().flat_map(|start| [*start, start + apart]).collect();
+            assert_eq!(left_out, wrong, "{apart} {sign}");
+        }
+    }
+
+    #[test]
+    fn wrong_samples_at_the_ends_of_a_record_are_found() {
+        let times = even(6500);
+        let noise = normal(6500, 10);
+        for ends in [[0, 6499], [1, 6498], [2, 6497]] {
+            let mut values: Vec<f64> = times.iter().zip(&noise).map(|(t, noise)| swing(*t) + noise).collect();
+            ends.iter().for_each(|at| values[*at] -= 100.0 * NOISE);
+            let kept = kept(&observed(times.clone(), values));
+            assert_eq!((0..6500).filter(|at| !kept[*at]).collect::<Vec<_>>(), ends);
+        }
     }
 
     /// At a share of one in fifty, seven of 250 samples are wrong by chance; thirty are no exceptions.
