@@ -314,7 +314,7 @@ fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fi
     let mut own = around(asked, base, is_best);
     own.extend(simplified(data, base, candidates));
     // A further law of the same effect is tried where the first one leaves more than noise.
-    let is_short = is_best && leaves_more(data, base);
+    let is_short = leaves_more(data, base);
     let general = candidates.iter().copied().filter(|own| is_short || !own.refines());
     own.extend(generalized(data, base, &general.collect::<Vec<_>>()));
     if !is_best {

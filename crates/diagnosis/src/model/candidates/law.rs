@@ -27,8 +27,8 @@ pub(crate) trait CandidateLaw: Any + Sync {
     fn is_non_negative(&self) -> bool;
 
     /// Returns `true` if the effect is flexible: it can act anywhere on a record and absorb what no law
-    /// explains, such as a stop at any deflection, a line at any frequency, or a drift. Default: `false`; its
-    /// shape follows from the motion.
+    /// explains, such as a stop at any deflection, a line at any frequency, or a spring or clock that drifts.
+    /// Default: `false`; its shape follows from the motion, or from time alone.
     fn is_flexible(&self) -> bool {
         false
     }

@@ -3,7 +3,7 @@
 use super::{Along, CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
 use crate::model::sensor::{Observed, Sensor};
-use dynamics::{ChainEffect, Effect};
+use dynamics::{ChainEffect, Effect, Nominal};
 
 /// Sensor whose zero drifts.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +26,9 @@ impl CandidateLaw for SensorDrift {
         false
     }
 
-    fn is_flexible(&self) -> bool {
-        true
+    /// Without a spring nothing brings the body back to where the sensor should read zero.
+    fn applies(&self, _facts: &Scales, nominal: &Nominal) -> bool {
+        nominal.stiffness() > 0.0
     }
 
     fn resembles(&self) -> &'static [&'static str] {
