@@ -245,7 +245,6 @@ fn what_can_sit_anywhere_on_a_record_is_flexible() {
         "flexible_coupling",
         "torque_limit",
         "speed_torque_limit",
-        "sensor_drift",
         "clock_drift",
     ];
     assert_eq!(flexible, all);
