@@ -48,8 +48,8 @@ const ROUNDS: usize = 3;
 /// least the rounding of a step. A sample is wrong if the distance exceeds the limit that any of all samples
 /// reaches by chance with a probability of 0.001, plus the largest distance that rounding can add. It also
 /// has to be isolated: bends (end stops, reversals under friction) grow with the spacing of the neighbors,
-/// and steps show on both sides. Of two neighboring wrong samples, each hides the other, and both are compared
-/// with the samples around the pair.
+/// and a sample beside a step lies near a parabola through three of them. Of two neighboring wrong samples, each
+/// hides the other, and both are compared with the samples around the pair.
 ///
 /// If bursts have lost samples, the places of samples within a burst are guesses, and no sample is called
 /// wrong.
