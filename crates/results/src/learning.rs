@@ -183,6 +183,17 @@ impl LearnRow {
         let median = 0.5 * (all.get(last / 2)? + all.get(all.len() / 2)?);
         Some([*all.first()?, median, *all.last()?])
     }
+
+    /// Returns "median (smallest to largest)" of the errors over the seeds; `None` for a single seed.
+    #[must_use]
+    pub fn range_stated(
+        &self,
+        of: impl Fn(&LearnDraw) -> Option<f64>,
+        stated: impl Fn(f64) -> String,
+    ) -> Option<String> {
+        let [least, median, most] = self.range(of)?.map(stated);
+        Some(format!("{median} ({least} to {most})"))
+    }
 }
 
 impl LearnDraw {

@@ -44,15 +44,45 @@ pub(crate) struct Distance {
     pub(crate) spread: f64,
     /// Largest distance that rounding by half a step can cause, for a step of 1.
     pub(crate) rounding: f64,
-    /// Smallest distance from the parabolas through three of the neighbors: small beside a wrong sample and at a step, where
-    /// the sample agrees with the others once a neighbor is left out.
-    pub(crate) from_parabolas: f64,
+    sample: Point,
+    neighbors: [Point; 4],
 }
 
 impl Distance {
+    fn new(sample: Point, neighbors: [Point; 4]) -> Self {
+        let [value, spread, rounding] = from_polynomial(sample, &neighbors);
+        Self { value, spread, rounding, sample, neighbors }
+    }
+
     pub(crate) fn in_noise(&self) -> f64 {
         self.value.abs() / self.spread
     }
+
+    /// Returns the smallest distance from the parabolas through three of the neighbors: small beside a wrong sample and at
+    /// a step, where the sample agrees with the others once a neighbor is left out.
+    pub(crate) fn parabola_distance(&self) -> f64 {
+        let without = |left_out: &Point| {
+            let nodes: Vec<Point> = self.neighbors.into_iter().filter(|node| node != left_out).collect();
+            let [value, ..] = from_polynomial(self.sample, &nodes);
+            value.abs()
+        };
+        self.neighbors.iter().map(without).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Returns the distance of a sample from the polynomial through some nodes, its standard deviation for white noise of 1,
+/// and the largest distance by rounding for a step of 1.
+fn from_polynomial((_, time, value): Point, nodes: &[Point]) -> [f64; 3] {
+    let (mut sum, mut squares, mut sizes) = (0.0, 1.0, 1.0);
+    for (own, node) in nodes.iter().enumerate() {
+        let others = nodes.iter().enumerate().filter(|(other, _)| *other != own);
+        let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
+        // With differences of values, samples at rest lie on the curve exactly.
+        sum += weight * (node.2 - value);
+        squares += weight * weight;
+        sizes += weight.abs();
+    }
+    [-sum, squares.sqrt(), 0.5 * sizes]
 }
 
 /// Returns the distances of all samples from cubics through the four neighbors once and twice `spacing` away, or through
@@ -62,27 +92,14 @@ pub(crate) fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<
         .map(|index| {
             let places = neighbors(index, spacing, points.len())?;
             let nodes = places.map(|place| points[place]);
-            let (_, time, value) = points[index];
+            let (_, time, _) = points[index];
             let product: f64 = nodes.iter().map(|node| (time - node.1).abs()).product();
             let even: f64 = places.iter().map(|place| place.abs_diff(index) as f64 * interval).product();
             if product.is_nan() || product > WIDE * even {
                 return None;
             }
-            let (mut sum, mut squares, mut sizes) = (0.0, 1.0, 1.0);
-            for (own, node) in nodes.iter().enumerate() {
-                let others = nodes.iter().enumerate().filter(|(other, _)| *other != own);
-                let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
-                // With differences of values, samples at rest lie on the cubic exactly.
-                sum += weight * (node.2 - value);
-                squares += weight * weight;
-                sizes += weight.abs();
-            }
-            squares.is_finite().then(|| Distance {
-                value: -sum,
-                spread: squares.sqrt(),
-                rounding: 0.5 * sizes,
-                from_parabolas: from_parabolas(&nodes, time, value),
-            })
+            let distance = Distance::new(points[index], nodes);
+            distance.spread.is_finite().then_some(distance)
         })
         .collect()
 }
@@ -97,18 +114,4 @@ fn neighbors(index: usize, spacing: usize, count: usize) -> Option<[usize; 4]> {
         false => index + (at - from_before + 1) * spacing,
     };
     (before + after >= 4).then(|| [0, 1, 2, 3].map(place))
-}
-
-/// Returns the smallest distance of a value from the parabolas through all but one of its neighbors.
-fn from_parabolas(nodes: &[Point; 4], time: f64, value: f64) -> f64 {
-    let without = |left_out: usize| {
-        let through = || nodes.iter().enumerate().filter(move |(own, _)| *own != left_out);
-        let part = |(own, node): (usize, &Point)| {
-            let others = through().filter(|(other, _)| *other != own);
-            let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
-            weight * (node.2 - value)
-        };
-        through().map(part).sum::<f64>().abs()
-    };
-    (0..nodes.len()).map(without).fold(f64::INFINITY, f64::min)
 }

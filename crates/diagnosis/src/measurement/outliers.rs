@@ -150,7 +150,7 @@ impl Limits {
         let (Some(own), Some(far)) = (near[at], far[at]) else { return false };
         let straight = far.value * own.value > ALONE * own.value * own.value
             && far.value.abs() < BEND * own.value.abs() + far.rounding.max(own.rounding) * self.step;
-        straight && own.from_parabolas > ALONE * own.value.abs()
+        straight && own.parabola_distance() > ALONE * own.value.abs()
     }
 }
 

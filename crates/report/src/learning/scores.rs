@@ -52,10 +52,7 @@ fn of_method(row: &LearnRow, problem: &LearnProblem) -> ScoreRow {
 
 /// Returns the median and the range over several seeds; for a single one, its own cell.
 fn ranged(row: &LearnRow, of: impl Fn(&LearnDraw) -> Option<f64>, own: String) -> String {
-    row.range(of).map_or(own, |all| {
-        let [least, median, most] = all.map(|error| significant(error, 3));
-        format!("{median} ({least} to {most})")
-    })
+    row.range_stated(of, |error| significant(error, 3)).unwrap_or(own)
 }
 
 /// Returns a row for each method of others, in the order in which the parts state them.

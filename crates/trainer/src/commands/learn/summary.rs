@@ -2,7 +2,7 @@
 
 use crate::terminal::table::table;
 use record::{prefixed, two_digits};
-use results::{LearnKind, LearnPart, LearnProblem, LearnResult, LearnRow};
+use results::{LearnDraw, LearnKind, LearnPart, LearnProblem, LearnResult, LearnRow};
 use std::path::Path;
 
 const HEADER: [&str; 9] =
@@ -71,22 +71,18 @@ fn table_of_parts(problem: &LearnProblem, rows: &[&LearnRow]) -> String {
         ["method"].into_iter().chain(names).chain(["validation", "numbers", "s"]).collect();
     let in_unit =
         |error: Option<f64>| error.map_or_else(|| "∞".to_owned(), |error| prefixed(error, &problem.unit));
-    // Over several seeds, the median and the range.
-    let ranged = |own: String, range: Option<[f64; 3]>| match range {
-        Some([least, median, most]) => {
-            let [least, median, most] = [least, median, most].map(|own| in_unit(Some(own)));
-            format!("{median} ({least} to {most})")
-        }
-        None => own,
-    };
     let own = |row: &&LearnRow| {
+        // Over several seeds, the median and the range.
+        let ranged = |own: Option<f64>, of: &dyn Fn(&LearnDraw) -> Option<f64>| {
+            row.range_stated(of, |error| in_unit(Some(error))).unwrap_or_else(|| in_unit(own))
+        };
         let error = |part: &LearnPart| {
             let errors = row.test.as_ref().map(|test| &test.parts);
             let own = errors.and_then(|errors| errors.iter().find(|own| own.part == part.id)?.free_run_rmse);
-            ranged(in_unit(own), row.range(|draw| draw.on(&part.id)))
+            ranged(own, &|draw| draw.on(&part.id))
         };
-        let validation = in_unit(row.validation.map(|validation| validation.free_run_rmse));
-        let validation = ranged(validation, row.range(|draw| draw.validation_rmse));
+        let validation = row.validation.map(|validation| validation.free_run_rmse);
+        let validation = ranged(validation, &|draw| draw.validation_rmse);
         let numbers = [validation, row.parameters.to_string(), format!("{:.1}", row.seconds)];
         [named(row)].into_iter().chain(problem.parts.iter().map(error)).chain(numbers).collect()
     };
@@ -122,12 +118,8 @@ fn cells(row: &LearnRow) -> Vec<String> {
     // of its own.
     let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
     // Over several seeds, the median and the range.
-    let free_run = |own: Option<f64>| match row.range(|draw| draw.free_run_rmse) {
-        Some(all) => {
-            let [least, median, most] = all.map(two_digits);
-            format!("{median} ({least} to {most})")
-        }
-        None => number(own),
+    let free_run = |own: Option<f64>| {
+        row.range_stated(|draw| draw.free_run_rmse, two_digits).unwrap_or_else(|| number(own))
     };
     let mut cells = vec![named(row)];
     match &row.test {
