@@ -14,6 +14,9 @@ use dynamics::{
 };
 use record::Quantity;
 
+/// Least stiffness of a position drive, relative to the stated one.
+const WEAKEST: f64 = 0.1;
+
 /// Smallest time constant I/c of the inertia that a fit may reach, in sampling intervals.
 const STIFFEST: f64 = 0.5;
 
@@ -186,7 +189,8 @@ impl Hypothesis {
             name: which.name(),
             lower: match which {
                 Calibrated::Inertia => self.least_inertia(facts),
-                Calibrated::Damping | Calibrated::Stiffness => 0.0,
+                Calibrated::Stiffness => self.least_stiffness(),
+                Calibrated::Damping => 0.0,
                 Calibrated::RestAngle | Calibrated::Effect { .. } => f64::NEG_INFINITY,
             },
             upper: f64::INFINITY,
@@ -210,6 +214,14 @@ impl Hypothesis {
             return least;
         }
         (STIFFEST * damping * facts.interval).clamp(least, 0.1 * facts.inertia)
+    }
+
+    /// Returns the lower bound of the stiffness: 0, or a part of the stated one where the input commands a position. The
+    /// spring is then the drive's own, with the input's gain. Without a bound, sets are fitted that no input moves:
+    /// each segment's start state follows a joint that holds still, and gains more there than it loses in all motions.
+    fn least_stiffness(&self) -> f64 {
+        let (stated, gain) = (self.nominal.stiffness(), self.nominal.input_gain());
+        if (gain - stated).abs() <= f64::EPSILON * stated { WEAKEST * stated } else { 0.0 }
     }
 
     /// Returns a known effect's parameter with bounds that always include its stated value. The effect is
