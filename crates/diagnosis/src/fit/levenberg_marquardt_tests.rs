@@ -8,8 +8,9 @@ use crate::model::candidate::Candidate;
 use crate::model::candidates::backlash::Backlash;
 use crate::model::candidates::coulomb_friction::CoulombFriction;
 use crate::model::candidates::hysteresis::Hysteresis;
+use crate::model::hypothesis::Calibrated;
 use dynamics::reference::{Tolerance, simulate};
-use dynamics::{Active, Nominal, Start, System};
+use dynamics::{Active, Coefficients, Nominal, Start, System};
 use rand_distr::{Distribution, StandardNormal};
 use record::{Clock, ClockChoice, Quantity, Record};
 use seed::Seed;
@@ -67,4 +68,29 @@ fn squares_are_those_of_the_fits_own_point() {
         }
     }
     assert!(checked > 8, "{checked}");
+}
+
+/// Two recordings of a joint that friction holds at 0.1 and 0.5 rad while its command changes its sign every second:
+/// without a bound, the closest spring would be none.
+#[test]
+fn a_position_drive_keeps_a_part_of_its_stiffness() {
+    let drive = Nominal::new(0.04, 0.6, 8.0, 0.0).unwrap();
+    let drive = drive.with_coefficients(Coefficients { input_gain: 8.0, ..drive.coefficients() }).unwrap();
+    let times: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.02).collect();
+    let command: Vec<f64> = (0..1000).map(|i| if i / 50 % 2 == 0 { 0.02 } else { -0.02 }).collect();
+    let mut generator = Seed::new(1).child("noise").generator();
+    let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+    let held = [0.1, 0.5].map(|angle| {
+        let values = times.iter().map(|_| angle + 1e-4 * noise()).collect();
+        let record =
+            Record::new(times.clone(), values, Some(command.clone()), Quantity::Position, "rad").unwrap();
+        Observations::new(&record, &Clock::new(&record, ClockChoice::Host).unwrap())
+    });
+    let kept = [vec![true; times.len()], vec![true; times.len()]];
+    let data = cut(&held, &kept, &(&drive).into()).unwrap();
+    let found = baseline(&data, &(&drive).into()).unwrap().calibrated;
+    let calibrated = found.hypothesis.calibrated.iter().zip(&found.point.globals);
+    let stiffness = calibrated.filter(|(which, _)| **which == Calibrated::Stiffness).map(|(_, value)| *value);
+    let stiffness: Vec<f64> = stiffness.collect();
+    assert!(stiffness.iter().all(|own| *own >= 0.1 * 8.0) && stiffness.len() == 1, "{stiffness:?}");
 }

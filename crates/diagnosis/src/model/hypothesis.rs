@@ -221,7 +221,8 @@ impl Hypothesis {
     /// each segment's start state follows a joint that holds still, and gains more there than it loses in all motions.
     fn least_stiffness(&self) -> f64 {
         let (stated, gain) = (self.nominal.stiffness(), self.nominal.input_gain());
-        if (gain - stated).abs() <= f64::EPSILON * stated { WEAKEST * stated } else { 0.0 }
+        let is_driven = self.calibrated.contains(&Calibrated::Inertia);
+        if is_driven && (gain - stated).abs() <= f64::EPSILON * stated { WEAKEST * stated } else { 0.0 }
     }
 
     /// Returns a known effect's parameter with bounds that always include its stated value. The effect is
