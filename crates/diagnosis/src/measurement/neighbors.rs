@@ -62,7 +62,7 @@ impl Distance {
     /// a step, where the sample agrees with the others once a neighbor is left out.
     pub(crate) fn parabola_distance(&self) -> f64 {
         let without = |left_out: &Point| {
-            let nodes: Vec<Point> = self.neighbors.into_iter().filter(|node| node != left_out).collect();
+            let nodes: Vec<Point> = self.neighbors.into_iter().filter(|node| node.0 != left_out.0).collect();
             let [value, ..] = from_polynomial(self.sample, &nodes);
             value.abs()
         };

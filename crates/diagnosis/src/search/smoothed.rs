@@ -213,12 +213,24 @@ pub(crate) fn smoothed(data: &Data, run: &Segment, oscillator: &Nominal, noise: 
 mod tests {
     use super::smoothed;
     use crate::data::observations::Observations;
-    use crate::data::segments::cut;
+    use crate::data::segments::{Data, Segment, cut};
     use crate::fixtures::record;
     use dynamics::chain::{Chain, Observed};
     use dynamics::reference::{Tolerance, simulate};
     use dynamics::{Active, Nominal, Start, System};
     use record::{Clock, ClockChoice};
+
+    /// Returns the data of a system released at 0.6 rad and read with a noise of 1 mrad, and their run of all samples.
+    fn released(system: &System, samples: u32) -> (Data, Segment) {
+        let chain = Chain::new(Observed::Position, 1e-3, Vec::new()).unwrap();
+        let record = record(system, 0.6, samples, &chain, 1);
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let observed = Observations::new(&record, &clock);
+        let kept = vec![true; observed.len()];
+        let data = cut(std::slice::from_ref(&observed), &[kept], &system.nominal().into()).unwrap();
+        let run = data.joined(usize::MAX).segments.remove(0);
+        (data, run)
+    }
 
     /// A damped joint whose speed settles within an eightieth of a sample's interval. The smoothed motion keeps to
     /// the readings.
@@ -226,13 +238,7 @@ mod tests {
     fn follows_a_joint_that_settles_between_samples() {
         let nominal = Nominal::new(1e-4, 2.0, 20.0, 0.0).unwrap();
         let system = System::new(nominal, Vec::new()).unwrap();
-        let chain = Chain::new(Observed::Position, 1e-3, Vec::new()).unwrap();
-        let record = record(&system, 0.6, 300, &chain, 1);
-        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
-        let observed = Observations::new(&record, &clock);
-        let kept = vec![true; observed.len()];
-        let data = cut(std::slice::from_ref(&observed), &[kept], &(&nominal).into()).unwrap();
-        let run = data.joined(usize::MAX).segments.remove(0);
+        let (data, run) = released(&system, 300);
         let motion = smoothed(&data, &run, &nominal, 1e-3);
         let most = |of: &[f64]| of.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
         let (furthest, fastest) = (most(&motion.position), most(&motion.velocity));
@@ -245,13 +251,7 @@ mod tests {
         let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
         let play = Active::new("backlash", &[0.24]).unwrap();
         let system = System::new(nominal, vec![play]).unwrap();
-        let chain = Chain::new(Observed::Position, 1e-3, Vec::new()).unwrap();
-        let record = record(&system, 0.6, 1000, &chain, 1);
-        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
-        let observed = Observations::new(&record, &clock);
-        let kept = vec![true; observed.len()];
-        let data = cut(std::slice::from_ref(&observed), &[kept], &(&nominal).into()).unwrap();
-        let run = data.joined(usize::MAX).segments.remove(0);
+        let (data, run) = released(&system, 1000);
         let softer = Nominal::new(1.0, 0.2, 250.0, 0.0).unwrap();
         let motion = smoothed(&data, &run, &softer, 1e-3);
         let truth = simulate(&system, Start::release(0.6), None, &run.times, &Tolerance::default()).unwrap();
