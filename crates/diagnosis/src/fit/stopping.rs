@@ -102,6 +102,9 @@ const MOST_DAMPING: f64 = 1e6;
 const FEWEST: usize = 6;
 const LOOKED_AT: usize = 3;
 
+/// Number of steps within which a fit has to become of use, at the pace of the best of its last steps.
+const SOON: usize = 10;
+
 /// Record of the last steps' gains, from which the end of a fit is decided.
 #[derive(Debug, Clone)]
 pub(crate) struct Ending {
@@ -171,12 +174,12 @@ impl Ending {
         self.small || self.crept >= CREPT || self.spent || damping > MOST_DAMPING
     }
 
-    /// Returns `true` if the remaining steps, each as good as the best of the last ones, would not reach the
+    /// Returns `true` if the next steps, each as good as the best of the last ones, would not reach the
     /// bound below which the fit is of use. `steps` is the number of steps made.
     pub(crate) fn is_in_vain(&self, squares: f64, steps: usize) -> bool {
         let (_, last) = self.gains.split_at(self.gains.len().saturating_sub(LOOKED_AT));
         let best = last.iter().copied().fold(0.0, f64::max);
-        let left = self.effort.steps.saturating_sub(steps) as f64;
+        let left = self.effort.steps.saturating_sub(steps).min(SOON) as f64;
         steps >= FEWEST
             && last.len() == LOOKED_AT
             && squares * libm::pow(1.0 - best, left) > self.effort.below
@@ -229,16 +232,16 @@ mod tests {
         assert!(ending.is_reached(1.0));
     }
 
-    /// 0.9 to the power of the 34 steps that are left is 0.028.
+    /// 0.9 to the power of the next ten steps is 0.35.
     #[test]
     fn a_fit_is_given_up_where_its_pace_does_not_take_it_there() {
         let mut ending = Ending::new(Stopping::SEARCH.below(1.0));
         for part in [0.9, 0.1, 0.05, 0.01] {
             ending.gained(part, 0.0, &residual(1));
         }
-        assert!(ending.is_in_vain(40.0, 6) && !ending.is_in_vain(30.0, 6));
-        assert!(!ending.is_in_vain(40.0, 5), "too early to say");
+        assert!(ending.is_in_vain(3.0, 6) && !ending.is_in_vain(2.8, 6));
+        assert!(!ending.is_in_vain(3.0, 5), "too early to say");
         ending.begin_again();
-        assert!(!ending.is_in_vain(40.0, 6), "nothing is known of the new beginning");
+        assert!(!ending.is_in_vain(3.0, 6), "nothing is known of the new beginning");
     }
 }

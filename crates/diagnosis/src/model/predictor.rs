@@ -26,8 +26,8 @@ const DEGREE: usize = 12;
 
 /// Number of steps, per segment and per sample, beyond which the motion chatters rather than swings; a fit
 /// turns back there.
-const MOST_STEPS: usize = 1200;
-const MOST_STEPS_PER_SAMPLE: usize = 10;
+const MOST_STEPS: usize = 400;
+const MOST_STEPS_PER_SAMPLE: usize = 3;
 
 /// Quantities that a prediction is differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
