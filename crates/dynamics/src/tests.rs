@@ -1,10 +1,11 @@
 //! Tests of the registry, and of every law against its description.
 
 use crate::fixtures::{at, moment};
-use crate::scalar::{Complex, Dual, Scalar};
+use crate::scalar::{Dual, Scalar};
 use crate::{
     Active, Class, MOST_HIDDEN, Moment, Nominal, REGISTRY, Start, System, SystemEffect, UNNAMED, Values,
 };
+use num_complex::Complex64;
 use std::collections::BTreeSet;
 
 #[test]
@@ -67,7 +68,7 @@ fn duals_agree_with_the_complex_step_in_every_law() {
             for (position, velocity) in [(0.5, 0.8), (-0.6, -1.2)] {
                 for which in 0..16 {
                     let state = (position, velocity, region);
-                    let complex = evaluate(effect, state, Complex { re: 0.0, im: STEP }, which);
+                    let complex = evaluate(effect, state, Complex64::new(0.0, STEP), which);
                     let dual = evaluate(effect, state, Dual::<1>::variable(0.0, 0), which);
                     for (complex, dual) in complex.iter().zip(dual) {
                         let derivative = complex.im / STEP;

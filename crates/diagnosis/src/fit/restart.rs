@@ -84,7 +84,7 @@ pub(crate) fn settle(
         }
         // The costly beginning is for segments that no other one brings near the rest.
         if is_behind(left)
-            && let Some(from) = lengthened(&mut simulator, segment, &guess, left / count)
+            && let Some(from) = lengthened(&mut simulator, segment, &guess, left)
             && let Ok(at) = simulator.predict(segment, &from)
         {
             try_from(from, at, &mut simulator);
@@ -102,7 +102,7 @@ const FEWEST: usize = 8;
 
 /// Returns a start state that was fitted to longer and longer beginnings of a segment, from its guess: each one
 /// is nearly in phase with the next, where a fit of the whole from afar may lose count of the swings. `None` if a
-/// beginning leaves a larger mean square than `known`, that of the whole from another start state.
+/// beginning alone leaves more squares than `known`, those of the whole from another start state.
 fn lengthened(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
@@ -123,7 +123,7 @@ fn lengthened(
         };
         let at = simulator.predict(&beginning, &start).ok()?;
         let (found, fitted) = descend(simulator, &beginning, start, at);
-        if fitted.mean_square() > known {
+        if fitted.residual.norm_squared() > known {
             return None;
         }
         start = found;

@@ -9,8 +9,6 @@ mod complex;
 mod dual;
 mod rounded;
 
-#[cfg(test)]
-pub(crate) use complex::Complex;
 pub use dual::Dual;
 pub(crate) use rounded::Rounded;
 

@@ -1,7 +1,7 @@
 //! Shared parts of the linear routes: scaling, triangles, and the promise of digits.
 
-use super::jacobi::singular_values;
-use super::vectors::{UNIT_ROUNDOFF, dot, finite, length};
+use super::jacobi::{Decomposition, singular_values, transpose};
+use super::vectors::{UNIT_ROUNDOFF, combine, dot, finite, length};
 use super::{ClassicalFit, Reached};
 use crate::FEWEST_DIGITS;
 use crate::certified::check;
@@ -147,6 +147,28 @@ pub(super) struct Solved<'a> {
     pub(super) inverse_rows: Vec<Vec<f64>>,
     pub(super) condition: f64,
     pub(super) stability: Stability,
+}
+
+impl<'a> Solved<'a> {
+    /// Solves U·Σ·Vᵀ·x = `right` by x = V·Σ⁻¹·Uᵀ·`right`; `lengths` are those of the columns before they were
+    /// scaled.
+    pub(super) fn by_singular_values(parts: &Decomposition, right: &[f64], lengths: &'a [f64]) -> Self {
+        let Decomposition { left, values, right: directions } = parts;
+        let shares: Vec<f64> =
+            left.iter().zip(values).map(|(left, value)| dot(left, right) / value).collect();
+        let weighted: Vec<Vec<f64>> = directions
+            .iter()
+            .zip(values)
+            .map(|(direction, value)| direction.iter().map(|x| x / value).collect())
+            .collect();
+        Self {
+            lengths,
+            scaled: combine(directions, &shares),
+            inverse_rows: transpose(&weighted),
+            condition: ratio(values),
+            stability: Stability::Orthogonal,
+        }
+    }
 }
 
 /// Converts a solution of the scaled problem to one of the given problem, with its promise.

@@ -1,8 +1,7 @@
 //! Method 2: a polynomial fit as in `numpy.polyfit`.
 
-use super::jacobi::{decompose, transpose};
-use super::linear::{LinearSolution, Solved, Stability, Triangle, finish, line_from, ratio, scale, singular};
-use super::vectors::{combine, dot};
+use super::jacobi::decompose;
+use super::linear::{LinearSolution, Solved, Triangle, finish, line_from, ratio, scale, singular};
 use super::{ClassicalFit, ClassicalRoute};
 use crate::error::OracleError;
 use envelope::Envelope;
@@ -50,22 +49,7 @@ pub fn polynomial(x: &[f64], y: &[f64], degree: usize) -> Result<LinearSolution,
     if condition.is_nan() || condition >= 1.0 / (y.len() as f64 * f64::EPSILON) {
         return Err(singular());
     }
-    let shares: Vec<f64> =
-        parts.left.iter().zip(&parts.values).map(|(left, value)| dot(left, &right) / value).collect();
-    let weighted: Vec<Vec<f64>> = parts
-        .right
-        .iter()
-        .zip(&parts.values)
-        .map(|(right, value)| right.iter().map(|x| x / value).collect())
-        .collect();
-    let solved = Solved {
-        lengths: &scaled.lengths,
-        scaled: combine(&parts.right, &shares),
-        inverse_rows: transpose(&weighted),
-        condition,
-        stability: Stability::Orthogonal,
-    };
-    finish(&columns, y, solved)
+    finish(&columns, y, Solved::by_singular_values(&parts, &right, &scaled.lengths))
 }
 
 /// Returns the triangle and the transformed right-hand side, built row by row.

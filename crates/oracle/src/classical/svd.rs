@@ -1,8 +1,7 @@
 //! Method 5: singular value decomposition by one-sided Jacobi rotations.
 
-use super::jacobi::{decompose, transpose};
-use super::linear::{LinearSolution, Solved, Stability, finish, fit_line, ratio, scale, singular};
-use super::vectors::{combine, dot};
+use super::jacobi::decompose;
+use super::linear::{LinearSolution, Solved, finish, fit_line, ratio, scale, singular};
 use super::{ClassicalFit, ClassicalRoute};
 use crate::error::OracleError;
 use envelope::Envelope;
@@ -37,22 +36,7 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, Or
     if !condition.is_finite() {
         return Err(singular());
     }
-    let shares: Vec<f64> =
-        parts.left.iter().zip(&parts.values).map(|(left, value)| dot(left, y) / value).collect();
-    let weighted: Vec<Vec<f64>> = parts
-        .right
-        .iter()
-        .zip(&parts.values)
-        .map(|(right, value)| right.iter().map(|x| x / value).collect())
-        .collect();
-    let solved = Solved {
-        lengths: &scaled.lengths,
-        scaled: combine(&parts.right, &shares),
-        inverse_rows: transpose(&weighted),
-        condition,
-        stability: Stability::Orthogonal,
-    };
-    finish(columns, y, solved)
+    finish(columns, y, Solved::by_singular_values(&parts, y, &scaled.lengths))
 }
 
 #[cfg(test)]
