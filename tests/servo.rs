@@ -144,3 +144,19 @@ fn a_recording_in_which_the_joint_stands_still_is_left_out_and_named() {
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("in every recording") && said.lines().count() == 1, "{said}");
 }
+
+#[test]
+fn a_command_that_follows_the_angle_is_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [log, nominal, out] = ["log.csv", "nominal.toml", "out"].map(|name| scratch.path().join(name));
+    std::fs::write(&nominal, servo("3.0", "0.12")).unwrap();
+    Joint { friction: 0.04, delay: 0.02, size: 1.0 }.write(&log, 16.0);
+    let text = std::fs::read_to_string(&log).unwrap();
+    let exchanged = text.replacen("command_rad,angle_rad", "angle_rad,command_rad", 1);
+    std::fs::write(&log, exchanged).unwrap();
+    let [log, nominal, out] = [&log, &nominal, &out].map(|path| path.to_str().unwrap());
+    let output = trainer(&["diagnose", log, "--nominal", nominal, "--out", out, "--quiet"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("--input angle_rad --value command_rad") && said.lines().count() == 1, "{said}");
+}

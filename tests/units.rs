@@ -2,7 +2,7 @@
 
 use crate::gaps::driven;
 use crate::reading::write;
-use crate::support::trainer;
+use crate::support::{number, trainer};
 use serde_json::Value;
 
 /// Runs the program and returns its standard output as JSON.
@@ -112,4 +112,5 @@ fn a_mean_that_no_swing_has_is_told_and_taken_away_as_printed() {
     assert!(findings(&with).contains("subtract it with --remove-mean"), "{}", findings(&with));
     assert!(!findings(&without).contains("--remove-mean"), "{}", findings(&without));
     assert_eq!(without["verdict"]["effects"], serde_json::json!([]), "{}", without["verdict"]);
+    assert!(number(&without, "/gap/ratio_to_floor") < 1.1, "{}", without["gap"]);
 }

@@ -96,6 +96,7 @@ impl From<WorkflowError> for Error {
             | E::NoLogs { .. }
             | E::MissingInput { .. }
             | E::StandsStill { .. }
+            | E::Exchanged { .. }
             | E::UnknownGain { .. }
             | E::OtherUnit { .. }
             | E::SameRecord { .. }

@@ -55,6 +55,19 @@ pub enum WorkflowError {
         /// Name of the first record.
         file: String,
     },
+    /// A column that is taken for the command follows the one that is taken for the measured position.
+    #[error(
+        "{file}: `{command}` was taken for the command and `{position}` for the measured position, but `{command}` follows \
+         `{position}`; exchange them: --input {position} --value {command}"
+    )]
+    Exchanged {
+        /// Name of the record.
+        file: String,
+        /// Column that is taken for the command.
+        command: String,
+        /// Column that is taken for the measured position.
+        position: String,
+    },
     /// The gain of an inner loop is unknown, and a record does not tell where to begin.
     #[error(
         "{file}: the gain of [actuator] is \"unknown\", and no command of this record explains its motion well enough to \

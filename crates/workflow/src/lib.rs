@@ -18,6 +18,7 @@
 )]
 
 mod actuator;
+mod commanded;
 mod error;
 pub mod estimate;
 pub mod guess;

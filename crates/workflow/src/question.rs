@@ -1,5 +1,6 @@
 //! Diagnosis question (records of one system and its nominal simulator) and its answer.
 
+use crate::commanded::{check_columns, is_still, left_out_still};
 use crate::error::WorkflowError;
 use crate::logs::Log;
 use crate::nominal;
@@ -131,30 +132,6 @@ fn alike_to(loaded: &Loaded, reading: &Reading) -> Reading {
     alike
 }
 
-/// Number of steps of the sensor within which a body counts as standing still.
-const STILL: f64 = 3.0;
-
-/// Returns `true` if the commanded position, or the body that it commands, stands still within the sensor's steps.
-fn is_still(loaded: &Loaded) -> bool {
-    let reading = &loaded.source.reading;
-    let commanded =
-        reading.input.as_ref().is_some_and(|input| input.unit.is_some() && input.unit == reading.value.unit);
-    let Some(command) = loaded.record.input().filter(|_| commanded) else { return false };
-    let span = |values: &[f64]| {
-        let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        highest - values.iter().copied().fold(f64::INFINITY, f64::min)
-    };
-    let step = loaded.record.quantum();
-    [command, loaded.record.values()].iter().any(|values| span(values) <= STILL * step)
-}
-
-/// Says that a recording was left out.
-fn left_out_still(file: &str) -> String {
-    format!(
-        "{file} is left out: its command stands still or the joint does not follow it, so it tells nothing"
-    )
-}
-
 impl Question {
     /// Combines records and a nominal simulator.
     ///
@@ -220,6 +197,7 @@ impl Question {
                 still.push(log.name.clone());
                 continue;
             }
+            check_columns(&loaded, &stated, &log.name)?;
             let mut first = loaded.given(&stated)?;
             first.row.findings.extend(note.take());
             given.push(first);

@@ -249,12 +249,21 @@ fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(),
     Err(WorkflowError::OtherUnit { file: file.to_owned(), found: record.unit(), expected })
 }
 
-/// Subtracts the means of the observed column and of the input.
+/// Subtracts the means of the observed column and of the input, weighted by a Hann window: of swings that a record's
+/// ends cut off, the plain mean keeps a part.
 ///
 /// # Errors
 /// Same as [`Record::new`], for numbers so large that their mean is not finite.
 pub fn centered(record: &Record) -> Result<Record, Fault> {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let turn = std::f64::consts::TAU / record.len() as f64;
+    let mean = |values: &[f64]| {
+        let weighted = values.iter().enumerate().map(|(at, value)| {
+            let weight = 1.0 - libm::cos(turn * (at as f64 + 0.5));
+            weight * value
+        });
+        // The weights' own mean is 1.
+        weighted.sum::<f64>() / values.len() as f64
+    };
     let value = mean(record.values());
     let input = record.input().map_or(0.0, mean);
     record.mapped(|own| own - value, |own| own - input)
