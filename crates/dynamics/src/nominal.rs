@@ -160,6 +160,13 @@ impl Nominal {
         self.coefficients.input_gain
     }
 
+    /// Returns `true` if the input is a position that the spring pulls the body to: its gain is the stiffness.
+    #[must_use]
+    pub fn commands_position(&self) -> bool {
+        let Coefficients { stiffness, input_gain, .. } = self.coefficients;
+        (input_gain - stiffness).abs() <= f64::EPSILON * stiffness
+    }
+
     /// Returns the coordinate: angle or displacement.
     #[must_use]
     pub fn coordinate(&self) -> Coordinate {

@@ -3,6 +3,7 @@
 use crate::error::WorkflowError;
 use crate::read::Loaded;
 use experiment::StatedNominal;
+use record::extremes;
 
 /// Number of steps of the sensor within which a body counts as standing still.
 const STILL: f64 = 3.0;
@@ -10,22 +11,20 @@ const STILL: f64 = 3.0;
 /// Correlation from which a column follows another one.
 const FOLLOWS: f64 = 0.2;
 
-/// Returns the commanded positions of a record; `None` if its input is not in the unit of its values.
-fn command(loaded: &Loaded) -> Option<&[f64]> {
+/// Returns the commanded positions of a record, after their column's name; `None` if its input is not in the unit of
+/// its values.
+fn command(loaded: &Loaded) -> Option<(&str, &[f64])> {
     let reading = &loaded.source.reading;
     let input = reading.input.as_ref()?;
-    loaded.record.input().filter(|_| input.unit.is_some() && input.unit == reading.value.unit)
+    let is_position = input.unit.is_some() && input.unit == reading.value.unit;
+    loaded.record.input().filter(|_| is_position).map(|values| (input.column.as_str(), values))
 }
 
 /// Returns `true` if the commanded position, or the body that it commands, stands still within the sensor's steps.
 pub(crate) fn is_still(loaded: &Loaded) -> bool {
-    let Some(command) = command(loaded) else { return false };
-    let span = |values: &[f64]| {
-        let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        highest - values.iter().copied().fold(f64::INFINITY, f64::min)
-    };
+    let Some((_, command)) = command(loaded) else { return false };
     let step = loaded.record.quantum();
-    [command, loaded.record.values()].iter().any(|values| span(values) <= STILL * step)
+    [command, loaded.record.values()].into_iter().map(extremes).any(|[low, high]| high - low <= STILL * step)
 }
 
 /// Says that a recording was left out.
@@ -63,17 +62,16 @@ pub(crate) fn check_columns(
     stated: &StatedNominal,
     file: &str,
 ) -> Result<(), WorkflowError> {
-    let (stiffness, gain) = (stated.nominal.stiffness(), stated.nominal.input_gain());
-    let is_position = (gain - stiffness).abs() <= f64::EPSILON * stiffness;
-    let Some(command) = command(loaded).filter(|_| is_position) else { return Ok(()) };
+    let Some((column, command)) = command(loaded).filter(|_| stated.nominal.commands_position()) else {
+        return Ok(());
+    };
     let position = loaded.record.values();
     if work(command, position) >= 0.0 || work(position, command) < FOLLOWS {
         return Ok(());
     }
-    let reading = &loaded.source.reading;
     Err(WorkflowError::Exchanged {
         file: file.to_owned(),
-        command: reading.input.as_ref().map(|input| input.column.clone()).unwrap_or_default(),
-        position: reading.value.column.clone(),
+        command: column.to_owned(),
+        position: loaded.source.reading.value.column.clone(),
     })
 }

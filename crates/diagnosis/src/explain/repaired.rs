@@ -72,9 +72,10 @@ fn start(data: &Data, fit: &Fit) -> Option<StartState> {
     data.segments.first().filter(|segment| segment.first && segment.record == 0)?;
     let [position, velocity, own @ ..] = fit.point.starts.first()?.as_slice() else { return None };
     let mut own = own.iter().copied();
-    let effects = fit.hypothesis.effects().filter(|effect| effect.free_hidden() > 0);
-    let hidden =
-        effects.map(|effect| (effect.id(), own.by_ref().take(effect.free_hidden()).collect())).collect();
+    let effects = fit.hypothesis.effects().filter(|effect| !effect.free_hidden().is_empty());
+    let hidden = effects
+        .map(|effect| (effect.id(), own.by_ref().take(effect.free_hidden().len()).collect()))
+        .collect();
     Some(StartState { position: *position, velocity: *velocity, hidden })
 }
 

@@ -162,7 +162,7 @@ impl<'a> Descent<'a> {
         let mut own = Self {
             data,
             hypothesis,
-            system: NormalEquations::of(&[], &[], 0, 0),
+            system: NormalEquations::of(&[], &[], Vec::new(), 0),
             parameters,
             moving,
             effort,
@@ -182,7 +182,7 @@ impl<'a> Descent<'a> {
 
     fn equations(&self, weights: &[f64]) -> NormalEquations {
         let globals = if self.moving == Moving::All { self.parameters.len() } else { 0 };
-        NormalEquations::of(&self.at, weights, self.hypothesis.start_length(), globals)
+        NormalEquations::of(&self.at, weights, self.hypothesis.hidden_scales(&self.data.facts), globals)
     }
 
     /// Returns `true` if a step moves sizes only and not yet shapes.

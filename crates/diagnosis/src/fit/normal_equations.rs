@@ -7,6 +7,7 @@
 use crate::fit::fitted::Point;
 use crate::matrices::{raised, solve};
 use crate::model::candidate::Parameter;
+use crate::model::hypothesis::VISIBLE;
 use crate::model::predictor::Prediction;
 use nalgebra::{DMatrix, DVector};
 
@@ -15,6 +16,8 @@ struct Block {
     own: DMatrix<f64>,
     shared: DMatrix<f64>,
     right: DVector<f64>,
+    /// Weighted squares that the segment leaves.
+    squares: f64,
 }
 
 /// Normal equations of segments, with start states separate from global parameters.
@@ -22,11 +25,15 @@ pub(crate) struct NormalEquations {
     blocks: Vec<Block>,
     globals: DMatrix<f64>,
     right: DVector<f64>,
+    /// Sizes of the hidden state variables.
+    hidden: Vec<f64>,
 }
 
 impl NormalEquations {
-    /// Creates the normal equations of weighted segments.
-    pub(crate) fn of(predictions: &[Prediction], weights: &[f64], starts: usize, globals: usize) -> Self {
+    /// Creates the normal equations of weighted segments. `hidden` are the sizes of the hidden state variables
+    /// that start states have.
+    pub(crate) fn of(predictions: &[Prediction], weights: &[f64], hidden: Vec<f64>, globals: usize) -> Self {
+        let starts = VISIBLE + hidden.len();
         let mut total = DMatrix::zeros(globals, globals);
         let mut right = DVector::zeros(globals);
         let mut blocks = Vec::with_capacity(predictions.len());
@@ -39,17 +46,28 @@ impl NormalEquations {
                 own: weight * own.tr_mul(&own),
                 shared: weight * own.tr_mul(&shared),
                 right: weight * own.tr_mul(&prediction.residual),
+                squares: weight * prediction.residual.norm_squared(),
             });
         }
-        Self { blocks, globals: total, right }
+        Self { blocks, globals: total, right, hidden }
     }
 
-    /// Returns the system of the global parameters after the start states have been eliminated.
-    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    /// Returns the matrix with which a step of some damping eliminates a start state.
+    fn of_step(&self, block: &Block, damping: f64) -> DMatrix<f64> {
+        raised_start(&block.own, damping, block.squares, &self.hidden)
+    }
+
+    /// Returns the system of the global parameters after the start states have been eliminated, each with the matrix
+    /// that `own` gives for its block.
+    fn reduced(
+        &self,
+        damping: f64,
+        own: impl Fn(&Block) -> DMatrix<f64>,
+    ) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let mut matrix = raised(&self.globals, damping);
         let mut right = self.right.clone();
         for block in &self.blocks {
-            let eliminated = raised(&block.own, damping).cholesky()?;
+            let eliminated = own(block).cholesky()?;
             let solved = eliminated.solve(&block.shared);
             matrix -= block.shared.tr_mul(&solved);
             right -= solved.tr_mul(&block.right);
@@ -59,7 +77,7 @@ impl NormalEquations {
 
     /// Solves for the step of all parameters, with some global parameters held.
     fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
-        let (matrix, right) = self.reduced(damping)?;
+        let (matrix, right) = self.reduced(damping, |block| self.of_step(block, damping))?;
         let free: Vec<usize> =
             held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
         let part = matrix.select_rows(&free).select_columns(&free);
@@ -76,7 +94,7 @@ impl NormalEquations {
         let mut starts = Vec::with_capacity(self.blocks.len());
         for block in &self.blocks {
             let right = &block.right - &block.shared * &step;
-            starts.push(raised(&block.own, damping).cholesky()?.solve(&right));
+            starts.push(self.of_step(block, damping).cholesky()?.solve(&right));
         }
         Some((step, starts))
     }
@@ -135,10 +153,26 @@ impl NormalEquations {
     /// Returns (JᵀJ)⁻¹ of the global parameters; infinite if the system cannot be solved.
     pub(crate) fn inverse(&self, parameters: &[Parameter]) -> DMatrix<f64> {
         let count = self.right.len();
-        self.reduced(0.0)
+        self.reduced(0.0, |block| raised(&block.own, 0.0))
             .and_then(|(matrix, _)| inverse(&matrix, &self.globals, parameters))
             .unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY))
     }
+}
+
+/// Share of what a segment leaves that a step of a hidden state by its own size costs, without damping.
+const COST: f64 = 0.1;
+
+/// Raises the normal matrix of a start state for a step; `hidden` are the sizes of its hidden state variables.
+///
+/// A hidden state may hardly show in the samples, as the motion of a second body does while dry friction holds the first
+/// one. Its diagonal entry is then nearly zero, however much it is raised, and the step has no bound. So a step also
+/// costs a part of the squares that the segment leaves. At the minimum there is no step and no cost.
+pub(crate) fn raised_start(own: &DMatrix<f64>, damping: f64, squares: f64, hidden: &[f64]) -> DMatrix<f64> {
+    let mut matrix = raised(own, damping);
+    for (size, at) in hidden.iter().zip(VISIBLE..) {
+        matrix[(at, at)] += (COST + damping) * squares / (size * size);
+    }
+    matrix
 }
 
 /// Entry of an inverse for a parameter that has no effect: its error has no bound. The entry is finite

@@ -8,8 +8,8 @@
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::fitted::{Point, extended};
+use crate::fit::normal_equations::raised_start;
 use crate::fit::stopping::SHORT;
-use crate::matrices::raised;
 use crate::model::hypothesis::Hypothesis;
 use crate::model::predictor::{Derivatives, Prediction, Simulator};
 use crate::noise::statistics::{mean, median};
@@ -50,6 +50,7 @@ pub(crate) fn settle(
     let usual = median(&predictions.iter().map(Prediction::mean_square).collect::<Vec<_>>());
     let all: f64 = predictions.iter().map(|prediction| prediction.residual.norm_squared()).sum();
     let mut simulator = Simulator::new(data, hypothesis, &point.globals, Derivatives::Starts)?;
+    let hidden = hypothesis.hidden_scales(&data.facts);
     let mut better = Vec::new();
     for (index, ((segment, start), prediction)) in
         data.segments.iter().zip(&point.starts).zip(predictions).enumerate()
@@ -72,7 +73,7 @@ pub(crate) fn settle(
         let mut least = prediction.residual.norm_squared();
         let (mut best, mut left) = (None, least);
         let mut try_from = |from, at, simulator: &mut Simulator<'_>| {
-            let (found, fitted) = descend(simulator, segment, from, at);
+            let (found, fitted) = descend(simulator, segment, &hidden, from, at);
             let squares = fitted.residual.norm_squared();
             if squares < 0.999 * least {
                 (least, best) = (squares, Some(found));
@@ -84,7 +85,7 @@ pub(crate) fn settle(
         }
         // The costly beginning is for segments that no other one brings near the rest.
         if is_behind(left)
-            && let Some(from) = lengthened(&mut simulator, segment, &guess, left)
+            && let Some(from) = lengthened(&mut simulator, segment, &hidden, &guess, left)
             && let Ok(at) = simulator.predict(segment, &from)
         {
             try_from(from, at, &mut simulator);
@@ -106,6 +107,7 @@ const FEWEST: usize = 8;
 fn lengthened(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
+    hidden: &[f64],
     guess: &[f64],
     known: f64,
 ) -> Option<Vec<f64>> {
@@ -122,7 +124,7 @@ fn lengthened(
             ..segment.clone()
         };
         let at = simulator.predict(&beginning, &start).ok()?;
-        let (found, fitted) = descend(simulator, &beginning, start, at);
+        let (found, fitted) = descend(simulator, &beginning, hidden, start, at);
         if fitted.residual.norm_squared() > known {
             return None;
         }
@@ -136,6 +138,7 @@ fn lengthened(
 fn descend(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
+    hidden: &[f64],
     from: Vec<f64>,
     at: Prediction,
 ) -> (Vec<f64>, Prediction) {
@@ -145,7 +148,8 @@ fn descend(
         let (start, at) = &best;
         let own = at.jacobian.columns(0, start.len());
         let right = own.tr_mul(&at.residual);
-        let Some(solved) = raised(&own.tr_mul(&own), damping).cholesky() else { break };
+        let matrix = raised_start(&own.tr_mul(&own), damping, at.residual.norm_squared(), hidden);
+        let Some(solved) = matrix.cholesky() else { break };
         let step = solved.solve(&right);
         if damping <= SHORT && right.dot(&step) <= SMALL * at.residual.norm_squared() {
             break;

@@ -14,6 +14,9 @@ use dynamics::{
 };
 use record::Quantity;
 
+/// Number of state variables of a segment's start that are not hidden: position and velocity.
+pub(crate) const VISIBLE: usize = 2;
+
 /// Least stiffness of a position drive, relative to the stated one.
 const WEAKEST: f64 = 0.1;
 
@@ -220,9 +223,8 @@ impl Hypothesis {
     /// spring is then the drive's own, with the input's gain. Without a bound, sets are fitted that no input moves:
     /// each segment's start state follows a joint that holds still, and gains more there than it loses in all motions.
     fn least_stiffness(&self) -> f64 {
-        let (stated, gain) = (self.nominal.stiffness(), self.nominal.input_gain());
         let is_driven = self.calibrated.contains(&Calibrated::Inertia);
-        if is_driven && (gain - stated).abs() <= f64::EPSILON * stated { WEAKEST * stated } else { 0.0 }
+        if is_driven && self.nominal.commands_position() { WEAKEST * self.nominal.stiffness() } else { 0.0 }
     }
 
     /// Returns a known effect's parameter with bounds that always include its stated value. The effect is
@@ -329,12 +331,17 @@ impl Hypothesis {
 
     /// Returns the number of fitted state variables of a segment's start: position, velocity and hidden ones.
     pub(crate) fn start_length(&self) -> usize {
-        2 + self.effects().map(|effect| effect.free_hidden()).sum::<usize>()
+        VISIBLE + self.effects().map(|effect| effect.free_hidden().len()).sum::<usize>()
+    }
+
+    /// Returns the sizes of the hidden ones, in the same order.
+    pub(crate) fn hidden_scales(&self, facts: &Scales) -> Vec<f64> {
+        self.effects().flat_map(|effect| effect.free_hidden()).map(|own| own.scale(facts)).collect()
     }
 
     /// Returns the same number without candidates, which every hypothesis fits.
     pub(crate) fn least_start_length(&self) -> usize {
-        2 + self.known.iter().map(|known| known.candidate.free_hidden()).sum::<usize>()
+        VISIBLE + self.known.iter().map(|known| known.candidate.free_hidden().len()).sum::<usize>()
     }
 
     /// Returns the candidates that count as effects.

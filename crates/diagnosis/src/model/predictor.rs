@@ -437,7 +437,7 @@ fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
 
 /// Returns the indices, among the system's hidden states, of those that each segment fits.
 fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
-    system_effects(hypothesis).flat_map(|(_, effect, from)| from..from + effect.free_hidden())
+    system_effects(hypothesis).flat_map(|(_, effect, from)| from..from + effect.free_hidden().len())
 }
 
 #[cfg(test)]

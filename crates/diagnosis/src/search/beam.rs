@@ -332,7 +332,7 @@ fn unmask(data: &Data, pool: &mut Archive, looked_at: &mut BTreeSet<Vec<usize>>)
     loop {
         let time = pool.autocorrelation_time();
         let Some(best) = pool.ranked(time).first().map(|fit| (*fit).clone()) else { return };
-        let creeps = best.hypothesis.candidates.iter().any(|candidate| candidate.free_hidden() > 0);
+        let creeps = best.hypothesis.candidates.iter().any(|candidate| !candidate.free_hidden().is_empty());
         if !creeps || !looked_at.insert(best.hypothesis.ranks()) {
             return;
         }

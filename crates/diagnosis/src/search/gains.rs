@@ -78,7 +78,7 @@ pub(crate) fn stands_alone(
     threshold: f64,
     looked: f64,
 ) -> bool {
-    let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
+    let starts = (candidate.free_hidden().len() * base.point.starts.len()) as f64;
     let price = starts * libm::log((base.samples() as f64 / time).max(2.0));
     stands_out(base, time, gain, threshold.max(price), looked * DECAYS.len() as f64)
 }

@@ -150,9 +150,14 @@ pub(super) struct Solved<'a> {
 }
 
 impl<'a> Solved<'a> {
-    /// Solves U·Σ·Vᵀ·x = `right` by x = V·Σ⁻¹·Uᵀ·`right`; `lengths` are those of the columns before they were
-    /// scaled.
-    pub(super) fn by_singular_values(parts: &Decomposition, right: &[f64], lengths: &'a [f64]) -> Self {
+    /// Solves U·Σ·Vᵀ·x = `right` by x = V·Σ⁻¹·Uᵀ·`right`; `condition` is the ratio of Σ, and `lengths` are those of the
+    /// columns before they were scaled.
+    pub(super) fn by_singular_values(
+        parts: &Decomposition,
+        condition: f64,
+        right: &[f64],
+        lengths: &'a [f64],
+    ) -> Self {
         let Decomposition { left, values, right: directions } = parts;
         let shares: Vec<f64> =
             left.iter().zip(values).map(|(left, value)| dot(left, right) / value).collect();
@@ -165,7 +170,7 @@ impl<'a> Solved<'a> {
             lengths,
             scaled: combine(directions, &shares),
             inverse_rows: transpose(&weighted),
-            condition: ratio(values),
+            condition,
             stability: Stability::Orthogonal,
         }
     }

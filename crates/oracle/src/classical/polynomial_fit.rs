@@ -49,7 +49,7 @@ pub fn polynomial(x: &[f64], y: &[f64], degree: usize) -> Result<LinearSolution,
     if condition.is_nan() || condition >= 1.0 / (y.len() as f64 * f64::EPSILON) {
         return Err(singular());
     }
-    finish(&columns, y, Solved::by_singular_values(&parts, &right, &scaled.lengths))
+    finish(&columns, y, Solved::by_singular_values(&parts, condition, &right, &scaled.lengths))
 }
 
 /// Returns the triangle and the transformed right-hand side, built row by row.

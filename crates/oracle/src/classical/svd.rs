@@ -36,7 +36,7 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, Or
     if !condition.is_finite() {
         return Err(singular());
     }
-    finish(columns, y, Solved::by_singular_values(&parts, y, &scaled.lengths))
+    finish(columns, y, Solved::by_singular_values(&parts, condition, y, &scaled.lengths))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Hysteresis that bends in another way than Dahl's law, or hardly slides.
 
 use super::hysteresis::{Hysteresis, bent_at_first};
-use super::{Along, CandidateLaw, EvidenceClass, Parameter};
+use super::{Along, CandidateLaw, EvidenceClass, Hidden, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Active, Effect, Moment, SystemEffect, Values};
 
@@ -60,8 +60,8 @@ impl CandidateLaw for BoucWen {
         Hysteresis.stated(active).is_none().then(|| active.values().to_vec())
     }
 
-    fn free_hidden(&self) -> usize {
-        1
+    fn free_hidden(&self) -> &'static [Hidden] {
+        &[Hidden::Share]
     }
 
     fn stiffness_and_damping(&self, values: &Values<f64>, moment: &Moment<f64>, facts: &Scales) -> [f64; 2] {

@@ -3,7 +3,7 @@
 //! A second body appears as a spectral line of its own, within what the samples can show. The search looks for a
 //! decaying line, since a steady one sees only 2/(rT) of a line that dies away at rate r within T.
 
-use super::{CandidateLaw, EvidenceClass, Lines, MainMode, Mode, Parameter};
+use super::{CandidateLaw, EvidenceClass, Hidden, Lines, MainMode, Mode, Parameter};
 use crate::data::scales::Scales;
 use dynamics::{Effect, Moment, Nominal, SystemEffect, Values};
 
@@ -125,8 +125,8 @@ impl CandidateLaw for FlexibleCoupling {
         rate <= MOST_DAMPED * mode && (apart || decays_apart) && !repeated
     }
 
-    fn free_hidden(&self) -> usize {
-        2
+    fn free_hidden(&self) -> &'static [Hidden] {
+        &[Hidden::Position, Hidden::Velocity]
     }
 
     /// A second body moves along at low frequency.

@@ -1,6 +1,6 @@
 //! Interface of a candidate to the rest of the diagnosis.
 
-use super::{Along, EvidenceClass, Lines, MainMode, Parameter};
+use super::{Along, EvidenceClass, Hidden, Lines, MainMode, Parameter};
 use crate::data::scales::Scales;
 use crate::model::sensor::Sensor;
 use dynamics::scalar::Dual;
@@ -124,10 +124,10 @@ pub(crate) trait CandidateLaw: Any + Sync {
         true
     }
 
-    /// Returns the number of hidden state variables that are unknown at the start of a segment in the middle
-    /// of a record and have to be fitted. Default: 0.
-    fn free_hidden(&self) -> usize {
-        0
+    /// Returns the hidden state variables that are unknown at the start of a segment in the middle of a record
+    /// and have to be fitted. Default: none.
+    fn free_hidden(&self) -> &'static [Hidden] {
+        &[]
     }
 
     /// Returns the index, among the parameters, of the displacement over which a contact bends before it

@@ -76,7 +76,7 @@ pub(crate) use along::{Along, Lines, Mode, driven, padded};
 pub(crate) use evidence_class::EvidenceClass;
 pub(crate) use law::{CandidateLaw, grid, has_drive, secant};
 pub(crate) use main_mode::MainMode;
-pub(crate) use parameter::Parameter;
+pub(crate) use parameter::{Hidden, Parameter};
 pub(crate) use polar::Polar;
 pub(crate) use position_torque::PositionTorque;
 pub(crate) use unlisted_damping::UnlistedDamping;

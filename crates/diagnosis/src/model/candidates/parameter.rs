@@ -1,4 +1,6 @@
-//! Parameters of a fit.
+//! Parameters of a fit, and the hidden state variables that its segments fit.
+
+use crate::data::scales::Scales;
 
 /// Fit parameter. Its name goes into the answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,5 +49,25 @@ impl Parameter {
     /// Creates a shape at whose lower bound the effect becomes another, simpler one.
     pub(crate) const fn simplifying_shape(name: &'static str, lower: f64, upper: f64) -> Self {
         Self { simpler: true, ..Self::shape(name, lower, upper) }
+    }
+}
+
+/// Kind of a hidden state variable that segments fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Hidden {
+    Position,
+    Velocity,
+    /// Between −1 and 1.
+    Share,
+}
+
+impl Hidden {
+    /// Returns the size that such a variable has in a record's motion.
+    pub(crate) fn scale(self, facts: &Scales) -> f64 {
+        match self {
+            Self::Position => facts.amplitude,
+            Self::Velocity => facts.amplitude * facts.frequency,
+            Self::Share => 1.0,
+        }
     }
 }

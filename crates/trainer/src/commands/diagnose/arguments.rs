@@ -176,7 +176,8 @@ pub(crate) struct Reading {
     /// Origin of the numbers, if the files do not state it: for the report's headline, not for the diagnosis
     #[arg(long, value_name = "ORIGIN", value_parser = PossibleValuesParser::new(record::Origin::NAMES))]
     pub(crate) origin: Option<String>,
-    /// Subtracts the mean of the observed column and of the input: for channels with an arbitrary zero
+    /// Subtracts the mean of the observed column and of the input, weighted toward the middle of the record: for channels
+    /// with an arbitrary zero
     #[arg(long)]
     pub(crate) remove_mean: bool,
 }
