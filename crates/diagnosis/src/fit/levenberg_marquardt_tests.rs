@@ -76,7 +76,7 @@ fn squares_are_those_of_the_fits_own_point() {
 }
 
 /// A second body swings on while friction holds the first one, where the samples hardly tell its state: without a bound
-/// to the steps of that state every step of the fit fails, at any damping, and 9 to 42 times the noise are left.
+/// to the steps of that state these fits end at 9 to 42 times the noise.
 #[test]
 fn a_second_body_is_fitted_beside_friction_that_holds_the_first_one() {
     let (friction, body) = (5.0, [0.3, 400.0, 0.1]);

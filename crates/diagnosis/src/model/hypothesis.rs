@@ -334,14 +334,14 @@ impl Hypothesis {
         VISIBLE + self.effects().map(|effect| effect.free_hidden().len()).sum::<usize>()
     }
 
-    /// Returns the sizes of the hidden ones, in the same order.
-    pub(crate) fn hidden_scales(&self, facts: &Scales) -> Vec<f64> {
-        self.effects().flat_map(|effect| effect.free_hidden()).map(|own| own.scale(facts)).collect()
-    }
-
     /// Returns the same number without candidates, which every hypothesis fits.
     pub(crate) fn least_start_length(&self) -> usize {
         VISIBLE + self.known.iter().map(|known| known.candidate.free_hidden().len()).sum::<usize>()
+    }
+
+    /// Returns the sizes of the hidden state variables of a segment's start, in their order.
+    pub(crate) fn hidden_scales(&self, facts: &Scales) -> Vec<f64> {
+        self.effects().flat_map(|effect| effect.free_hidden()).map(|own| own.scale(facts)).collect()
     }
 
     /// Returns the candidates that count as effects.
