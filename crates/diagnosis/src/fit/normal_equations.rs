@@ -9,7 +9,10 @@ use crate::matrices::{raised, solve};
 use crate::model::candidate::Parameter;
 use crate::model::hypothesis::VISIBLE;
 use crate::model::predictor::Prediction;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// Cholesky factors of the matrix of a start state.
+type Factors = Cholesky<f64, Dyn>;
 
 /// Blocks of one segment in the normal equations.
 struct Block {
@@ -26,13 +29,18 @@ pub(crate) struct NormalEquations {
     globals: DMatrix<f64>,
     right: DVector<f64>,
     /// Sizes of the hidden state variables.
-    hidden: Vec<f64>,
+    hidden: Vec<Option<f64>>,
 }
 
 impl NormalEquations {
     /// Creates the normal equations of weighted segments. `hidden` are the sizes of the hidden state variables
     /// that start states have.
-    pub(crate) fn of(predictions: &[Prediction], weights: &[f64], hidden: Vec<f64>, globals: usize) -> Self {
+    pub(crate) fn of(
+        predictions: &[Prediction],
+        weights: &[f64],
+        hidden: Vec<Option<f64>>,
+        globals: usize,
+    ) -> Self {
         let starts = VISIBLE + hidden.len();
         let mut total = DMatrix::zeros(globals, globals);
         let mut right = DVector::zeros(globals);
@@ -52,32 +60,28 @@ impl NormalEquations {
         Self { blocks, globals: total, right, hidden }
     }
 
-    /// Returns the matrix with which a step of some damping eliminates a start state.
-    fn of_step(&self, block: &Block, damping: f64) -> DMatrix<f64> {
-        raised_start(&block.own, damping, block.squares, &self.hidden)
+    /// Returns the factors with which a step of some damping eliminates the start states.
+    fn factors(&self, damping: f64) -> Option<Vec<Factors>> {
+        let raised = |block: &Block| raised_start(&block.own, damping, block.squares, &self.hidden);
+        self.blocks.iter().map(|block| raised(block).cholesky()).collect()
     }
 
-    /// Returns the system of the global parameters after the start states have been eliminated, each with the matrix
-    /// that `own` gives for its block.
-    fn reduced(
-        &self,
-        damping: f64,
-        own: impl Fn(&Block) -> DMatrix<f64>,
-    ) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    /// Returns the system of the global parameters after the start states have been eliminated.
+    fn reduced(&self, damping: f64, factors: &[Factors]) -> (DMatrix<f64>, DVector<f64>) {
         let mut matrix = raised(&self.globals, damping);
         let mut right = self.right.clone();
-        for block in &self.blocks {
-            let eliminated = own(block).cholesky()?;
-            let solved = eliminated.solve(&block.shared);
+        for (block, factors) in self.blocks.iter().zip(factors) {
+            let solved = factors.solve(&block.shared);
             matrix -= block.shared.tr_mul(&solved);
             right -= solved.tr_mul(&block.right);
         }
-        Some((matrix, right))
+        (matrix, right)
     }
 
     /// Solves for the step of all parameters, with some global parameters held.
     fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
-        let (matrix, right) = self.reduced(damping, |block| self.of_step(block, damping))?;
+        let factors = self.factors(damping)?;
+        let (matrix, right) = self.reduced(damping, &factors);
         let free: Vec<usize> =
             held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
         let part = matrix.select_rows(&free).select_columns(&free);
@@ -86,16 +90,12 @@ impl NormalEquations {
         if !free.is_empty() {
             let solution = solve(&part, &part_right)?;
             for (value, &index) in solution.iter().zip(&free) {
-                if let Some(slot) = step.get_mut(index) {
-                    *slot = *value;
-                }
+                step[index] = *value;
             }
         }
-        let mut starts = Vec::with_capacity(self.blocks.len());
-        for block in &self.blocks {
-            let right = &block.right - &block.shared * &step;
-            starts.push(self.of_step(block, damping).cholesky()?.solve(&right));
-        }
+        let own =
+            |(block, factors): (&Block, &Factors)| factors.solve(&(&block.right - &block.shared * &step));
+        let starts = self.blocks.iter().zip(&factors).map(own).collect();
         Some((step, starts))
     }
 
@@ -153,8 +153,10 @@ impl NormalEquations {
     /// Returns (JᵀJ)⁻¹ of the global parameters; infinite if the system cannot be solved.
     pub(crate) fn inverse(&self, parameters: &[Parameter]) -> DMatrix<f64> {
         let count = self.right.len();
-        self.reduced(0.0, |block| raised(&block.own, 0.0))
-            .and_then(|(matrix, _)| inverse(&matrix, &self.globals, parameters))
+        let factors: Option<Vec<_>> =
+            self.blocks.iter().map(|block| raised(&block.own, 0.0).cholesky()).collect();
+        factors
+            .and_then(|factors| inverse(&self.reduced(0.0, &factors).0, &self.globals, parameters))
             .unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY))
     }
 }
@@ -167,10 +169,17 @@ const COST: f64 = 0.1;
 /// A hidden state may hardly show in the samples, as the motion of a second body does while dry friction holds the first
 /// one. Its diagonal entry is then nearly zero, however much it is raised, and the step has no bound. So a step also
 /// costs a part of the squares that the segment leaves. At the minimum there is no step and no cost.
-pub(crate) fn raised_start(own: &DMatrix<f64>, damping: f64, squares: f64, hidden: &[f64]) -> DMatrix<f64> {
+pub(crate) fn raised_start(
+    own: &DMatrix<f64>,
+    damping: f64,
+    squares: f64,
+    hidden: &[Option<f64>],
+) -> DMatrix<f64> {
     let mut matrix = raised(own, damping);
     for (size, at) in hidden.iter().zip(VISIBLE..) {
-        matrix[(at, at)] += (COST + damping) * squares / (size * size);
+        if let Some(size) = size {
+            matrix[(at, at)] += (COST + damping) * squares / (size * size);
+        }
     }
     matrix
 }

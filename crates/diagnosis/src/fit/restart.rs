@@ -107,7 +107,7 @@ const FEWEST: usize = 8;
 fn lengthened(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
-    hidden: &[f64],
+    hidden: &[Option<f64>],
     guess: &[f64],
     known: f64,
 ) -> Option<Vec<f64>> {
@@ -138,7 +138,7 @@ fn lengthened(
 fn descend(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
-    hidden: &[f64],
+    hidden: &[Option<f64>],
     from: Vec<f64>,
     at: Prediction,
 ) -> (Vec<f64>, Prediction) {

@@ -339,8 +339,9 @@ impl Hypothesis {
         VISIBLE + self.known.iter().map(|known| known.candidate.free_hidden().len()).sum::<usize>()
     }
 
-    /// Returns the sizes of the hidden state variables of a segment's start, in their order.
-    pub(crate) fn hidden_scales(&self, facts: &Scales) -> Vec<f64> {
+    /// Returns the sizes of the hidden state variables of a segment's start, in their order; `None` for one whose
+    /// steps a fit does not bound.
+    pub(crate) fn hidden_scales(&self, facts: &Scales) -> Vec<Option<f64>> {
         self.effects().flat_map(|effect| effect.free_hidden()).map(|own| own.scale(facts)).collect()
     }
 

@@ -62,12 +62,13 @@ pub(crate) enum Hidden {
 }
 
 impl Hidden {
-    /// Returns the size that such a variable has in a record's motion.
-    pub(crate) fn scale(self, facts: &Scales) -> f64 {
+    /// Returns the size that such a variable has in a record's motion, with which a fit keeps its steps bounded. A
+    /// share has none: fits that held it back needed more steps and ended no better.
+    pub(crate) fn scale(self, facts: &Scales) -> Option<f64> {
         match self {
-            Self::Position => facts.amplitude,
-            Self::Velocity => facts.amplitude * facts.frequency,
-            Self::Share => 1.0,
+            Self::Position => Some(facts.amplitude),
+            Self::Velocity => Some(facts.amplitude * facts.frequency),
+            Self::Share => None,
         }
     }
 }
