@@ -117,11 +117,15 @@ fn every_shipped_configuration_runs() {
             quick.extend(all.then_some("learn.learners=sindy"));
             // The repaired simulator needs a diagnosis of each system: a test in `learning::` has one.
             quick.extend(all.then_some("learn.baselines=persistence,nominal,recalibrated,arx"));
-            // Networks train on the benchmarks' records for minutes; their own configurations run them.
+            // Networks train on the benchmarks' records for minutes, and a grey box on the longest one; other
+            // configurations run them.
             let is_benchmark = path.to_str().unwrap().contains("benchmark");
-            quick.extend(is_benchmark.then_some("learn.learners=sindy,grey-box"));
-            // The problems of the table are those of the other two files.
+            let is_longest = path.ends_with("silverbox.toml");
+            let few = if is_longest { "learn.learners=sindy" } else { "learn.learners=sindy,grey-box" };
+            quick.extend(is_benchmark.then_some(few));
+            // The problems of a table are those of other files.
             quick.extend(path.ends_with("table.toml").then_some("learn.problems=drag-cubic"));
+            quick.extend(path.ends_with("benchmarks.toml").then_some("learn.problems=cascaded-tanks"));
             let (code, result, _) = result(&quick);
             assert_eq!(code, 0, "{}: {result}", path.display());
             continue;

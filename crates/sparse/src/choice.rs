@@ -47,7 +47,7 @@ pub(crate) fn criterion(law: &Law, scaled: &Scaled, effective: f64) -> f64 {
 /// Returns the simplest law whose criterion is within `evidence` of the best, and the criteria of all laws.
 ///
 /// `laws` are ordered from the richest to the poorest; `None` for no law.
-pub fn choose<'a>(laws: &'a [Law], scaled: &Scaled, evidence: f64) -> Option<(&'a Law, Vec<f64>)> {
+pub(crate) fn choose<'a>(laws: &'a [Law], scaled: &Scaled, evidence: f64) -> Option<(&'a Law, Vec<f64>)> {
     let effective = effective_peaks(&scaled.residuals(&laws.first()?.trajectory), floor(scaled));
     let criteria: Vec<f64> = laws.iter().map(|law| criterion(law, scaled, effective)).collect();
     let best = criteria.iter().copied().fold(f64::INFINITY, f64::min);

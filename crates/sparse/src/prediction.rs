@@ -22,7 +22,7 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 /// Reference: Sargan, Econometrica 26 (1958) 393, for the covariance under instruments that are not the
 /// derivatives themselves.
 #[must_use]
-pub fn predictions(
+pub(crate) fn predictions(
     law: &Law,
     scaled: &Scaled,
     instruments: Option<DMatrix<f64>>,

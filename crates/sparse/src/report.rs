@@ -1,13 +1,76 @@
-//! Report on the discovered law in words.
+//! Estimate by the discovered law, and the report on it in words.
 
+use crate::choice::choose;
 use crate::law::{Law, number};
 use crate::path::Path;
+use crate::prediction::predictions;
 use crate::scaled::Scaled;
+use estimator::{Estimate, ModelFile, Reached, Stop, Uncertainty};
+use nalgebra::DMatrix;
+
+/// Regression of a method, as the errors of an estimate need it.
+pub struct Regression<'a> {
+    /// Method's own text before the path: whole paragraphs, or empty.
+    pub method: &'a str,
+    /// Instruments of the regression along a law's trajectory, peaks by parameters: their products with the residuals at
+    /// the peaks are zero.
+    pub instruments: &'a dyn Fn(&Law) -> DMatrix<f64>,
+    /// Information on a constant law's rate in scaled time, per variance of the scatter at a peak.
+    pub information: f64,
+}
+
+impl Regression<'_> {
+    /// Returns the estimate by the simplest law of a path whose criterion is within `evidence` of the best, with
+    /// predictions at times in seconds after the first peak. A path that halted states no errors.
+    #[must_use]
+    pub fn estimate(
+        &self,
+        scaled: &Scaled,
+        path: &Path,
+        evidence: f64,
+        steps: u64,
+        query_times: &[f64],
+    ) -> Estimate {
+        let chosen = choose(&path.laws, scaled, evidence);
+        let law = chosen.as_ref().map_or(&path.latest, |(law, _)| law);
+        let equation = law.equation(scaled);
+        let criteria = chosen.as_ref().map_or(&[][..], |(_, criteria)| criteria);
+        let stop = path.halt.map_or_else(
+            || Stop { reached: Reached::Converged, because: because(&equation, law, path, criteria) },
+            |halt| halt.stop(steps, &equation),
+        );
+        let fitted: Vec<f64> = law.trajectory.iter().map(|x| x + scaled.mean).collect();
+        let has_settled = path.halt.is_none();
+        let instruments = (has_settled && !query_times.is_empty()).then(|| (self.instruments)(law));
+        Estimate {
+            decay_rate: scaled.decay_rate(&law.trajectory),
+            log_amplitude: fitted.first().copied().unwrap_or(scaled.mean),
+            uncertainty: self.uncertainty(scaled, law).filter(|_| has_settled),
+            stop,
+            steps,
+            parameters: law.parameters(),
+            model: Some(ModelFile {
+                name: "equation.txt".to_owned(),
+                bytes: model_text(scaled, law, path, criteria, self.method).into_bytes(),
+            }),
+            fitted_log_amplitudes: fitted,
+            predictions: predictions(law, scaled, instruments, query_times),
+            equation: Some(equation),
+        }
+    }
+
+    /// Returns the interval by the scatter about a law, with the information on a constant rate.
+    fn uncertainty(&self, scaled: &Scaled, law: &Law) -> Option<Uncertainty> {
+        let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)? as f64;
+        let std_error = (law.squares / degrees / self.information).sqrt() / scaled.span_s;
+        Uncertainty::students_t(scaled.decay_rate(&law.trajectory), std_error, degrees)
+    }
+}
 
 /// Returns one sentence on why the fit stopped: the law, the number of laws compared, and how far its
 /// information criterion lies below that of an exponential. `criteria` holds one value per law of the path,
 /// in its order.
-pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> String {
+fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> String {
     debug_assert_eq!(path.laws.len(), criteria.len(), "a criterion for each law");
     let criterion_of = |parameters: usize| {
         path.laws
@@ -33,7 +96,7 @@ pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> Stri
 /// from.
 ///
 /// `method` is the method's own text before the path: whole paragraphs, or empty.
-pub fn model_text(scaled: &Scaled, law: &Law, path: &Path, criteria: &[f64], method: &str) -> String {
+fn model_text(scaled: &Scaled, law: &Law, path: &Path, criteria: &[f64], method: &str) -> String {
     let start = law.start() + scaled.mean;
     let mut text = format!(
         "{}\n{}\nA(0) = {}\n\nA in the record's unit, t in seconds after the first peak.\n",

@@ -2,14 +2,9 @@
 
 use crate::config::SindyConfig;
 use envelope::Envelope;
-use estimator::{
-    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Stop, Uncertainty,
-};
+use estimator::{Estimate, Estimator, FitContext, FitError};
 use nalgebra::{DMatrix, DVector};
-use sparse::{
-    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, predictions, running_integral,
-    solve,
-};
+use sparse::{Column, Halt, Law, Path, Progress, Regression, Scaled, running_integral, solve};
 
 /// Most passes; a law that has not settled by then is dropped.
 const MOST_PASSES: usize = 200;
@@ -19,7 +14,15 @@ impl Estimator for SindyConfig {
         let scaled = Scaled::of(envelope)?;
         let mut progress = Progress::new(context, self.max_steps, &scaled);
         let path = self.path(&scaled, &mut progress);
-        Ok(self.describe(&scaled, &path, progress.steps(), context.query_times()))
+        let instruments = |law: &Law| {
+            let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
+            regressors(&columns, Some(law), &scaled)
+        };
+        // The residuals are orthogonal to 1 and t, so that the slope of a line through the trajectory is that through the
+        // peaks.
+        let regression =
+            Regression { method: "", instruments: &instruments, information: scaled.squared_times() };
+        Ok(regression.estimate(&scaled, &path, self.evidence, progress.steps(), context.query_times()))
     }
 }
 
@@ -71,43 +74,6 @@ impl SindyConfig {
         }
         Ok(false)
     }
-
-    fn describe(&self, scaled: &Scaled, path: &Path, steps: u64, query_times: &[f64]) -> Estimate {
-        let chosen = choose(&path.laws, scaled, self.evidence);
-        let law = chosen.as_ref().map_or(&path.latest, |(law, _)| law);
-        let equation = law.equation(scaled);
-        let criteria = chosen.as_ref().map_or(&[][..], |(_, criteria)| criteria);
-        let stop = path.halt.map_or_else(
-            || Stop { reached: Reached::Converged, because: because(&equation, law, path, criteria) },
-            |halt| halt.stop(steps, &equation),
-        );
-        let decay_rate = scaled.decay_rate(&law.trajectory);
-        let fitted: Vec<f64> = law.trajectory.iter().map(|x| x + scaled.mean).collect();
-        Estimate {
-            decay_rate,
-            log_amplitude: fitted.first().copied().unwrap_or(scaled.mean),
-            uncertainty: uncertainty(scaled, law, decay_rate).filter(|_| path.halt.is_none()),
-            stop,
-            steps,
-            parameters: law.parameters(),
-            model: Some(ModelFile {
-                name: "equation.txt".to_owned(),
-                bytes: model_text(scaled, law, path, criteria, "").into_bytes(),
-            }),
-            fitted_log_amplitudes: fitted,
-            predictions: predicted(scaled, law, path.halt.is_none(), query_times),
-            equation: Some(equation),
-        }
-    }
-}
-
-/// Predicts by the law at the query times. Its regression leaves residuals orthogonal to its own regressors.
-/// If the law has not settled, no error is stated.
-fn predicted(scaled: &Scaled, law: &Law, has_settled: bool, query_times: &[f64]) -> Vec<Prediction> {
-    let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
-    let instruments = || regressors(&columns, Some(law), scaled);
-    let asked = has_settled && !query_times.is_empty();
-    predictions(law, scaled, asked.then(instruments), query_times)
 }
 
 /// Returns the regressors 1, s and the integrals of the terms, evaluated along a law's trajectory or at the
@@ -142,13 +108,4 @@ fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<L
     let terms = columns.iter().copied().zip(solution.iter().copied().skip(2)).collect();
     let law = Law::new(constant, terms, trajectory, scaled);
     law.squares.is_finite().then_some(law)
-}
-
-/// Computes the standard error from the scatter about the law, with the leverage of the peaks on a line's
-/// slope. The projection of the trajectory equals that of the peaks, because the residuals are orthogonal to
-/// 1 and t.
-fn uncertainty(scaled: &Scaled, law: &Law, decay_rate: f64) -> Option<Uncertainty> {
-    let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)? as f64;
-    let std_error = (law.squares / degrees / scaled.squared_times()).sqrt() / scaled.span_s;
-    Uncertainty::students_t(decay_rate, std_error, degrees)
 }

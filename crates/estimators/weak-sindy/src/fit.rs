@@ -4,14 +4,9 @@ use crate::config::{TermsAlong, WeakSindyConfig};
 use crate::sloped::Sloped;
 use crate::test_functions::TestFunctions;
 use envelope::Envelope;
-use estimator::{
-    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Stop, Uncertainty,
-};
+use estimator::{Estimate, Estimator, FitContext, FitError};
 use nalgebra::DVector;
-use sparse::{
-    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, predictions, running_integral,
-    solve,
-};
+use sparse::{Column, Halt, Law, Path, Progress, Regression, Scaled, running_integral, solve};
 
 /// Most passes; a law that has not settled by then is dropped.
 const MOST_PASSES: usize = 200;
@@ -33,7 +28,12 @@ impl Estimator for WeakSindyConfig {
         };
         let columns = self.terms().filter_map(|term| Column::over(term, &scaled)).collect();
         let path = problem.path(columns, &mut progress);
-        Ok(self.describe(&problem, &path, progress.steps(), context.query_times()))
+        let regression = Regression {
+            method: &format!("Weak form against {} test functions.\n\n", problem.functions.len()),
+            instruments: &|law| problem.functions.instruments(law, &scaled),
+            information: problem.functions.information(&scaled),
+        };
+        Ok(regression.estimate(&scaled, &path, self.evidence, progress.steps(), context.query_times()))
     }
 }
 
@@ -192,53 +192,4 @@ impl Problem<'_> {
         let trajectory = rise.iter().map(|x| x + start).collect();
         Sloped::new(law.constant, law.terms, trajectory, rates, scaled)
     }
-}
-
-impl WeakSindyConfig {
-    fn describe(&self, problem: &Problem<'_>, path: &Path, steps: u64, query_times: &[f64]) -> Estimate {
-        let scaled = problem.scaled;
-        let chosen = choose(&path.laws, scaled, self.evidence);
-        let law = chosen.as_ref().map_or(&path.latest, |(law, _)| law);
-        let equation = law.equation(scaled);
-        let method = format!("Weak form against {} test functions.\n\n", problem.functions.len());
-        let criteria = chosen.as_ref().map_or(&[][..], |(_, criteria)| criteria);
-        let stop = path.halt.map_or_else(
-            || Stop { reached: Reached::Converged, because: because(&equation, law, path, criteria) },
-            |halt| halt.stop(steps, &equation),
-        );
-        let decay_rate = scaled.decay_rate(&law.trajectory);
-        let fitted: Vec<f64> = law.trajectory.iter().map(|x| x + scaled.mean).collect();
-        Estimate {
-            decay_rate,
-            log_amplitude: fitted.first().copied().unwrap_or(scaled.mean),
-            uncertainty: uncertainty(problem, law, decay_rate).filter(|_| path.halt.is_none()),
-            stop,
-            steps,
-            parameters: law.parameters(),
-            model: Some(ModelFile {
-                name: "equation.txt".to_owned(),
-                bytes: model_text(scaled, law, path, criteria, &method).into_bytes(),
-            }),
-            fitted_log_amplitudes: fitted,
-            predictions: predicted(problem, law, path.halt.is_none(), query_times),
-            equation: Some(equation),
-        }
-    }
-}
-
-/// Predicts by the law at the query times. If the law has not settled, no error is stated.
-fn predicted(problem: &Problem<'_>, law: &Law, has_settled: bool, query_times: &[f64]) -> Vec<Prediction> {
-    let instruments = || problem.functions.instruments(law, problem.scaled);
-    let asked = has_settled && !query_times.is_empty();
-    predictions(law, problem.scaled, asked.then(instruments), query_times)
-}
-
-/// Computes the standard error from the scatter about the law, by the test functions' information on a
-/// constant rate.
-fn uncertainty(problem: &Problem<'_>, law: &Law, decay_rate: f64) -> Option<Uncertainty> {
-    let scaled = problem.scaled;
-    let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)? as f64;
-    let information = problem.functions.information(scaled);
-    let std_error = (law.squares / degrees / information).sqrt() / scaled.span_s;
-    Uncertainty::students_t(decay_rate, std_error, degrees)
 }

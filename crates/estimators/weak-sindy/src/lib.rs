@@ -50,7 +50,7 @@
 //! Predictions follow the law itself: its trajectory between the peaks, integrated forward beyond them and
 //! backward before them. A law with dry friction comes to rest in a finite time, and ln A is −∞ from there
 //! on. The standard deviation of a measured peak combines the scatter and its effect on the initial value and
-//! the coefficients, by the delta method ([`sparse::predictions`]); like the interval it is conditional on
+//! the coefficients, by the delta method ([`sparse::Regression`]); like the interval it is conditional on
 //! the choice of terms.
 //!
 //! References: Messenger, Bortz, Multiscale Modeling & Simulation 19 (2021) 1474 (weak form); Bortz,
