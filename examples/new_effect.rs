@@ -4,7 +4,7 @@
 //! simulates a record of a system with an effect that the program does not know, and prints the diagnosis of
 //! that record. Then it prints the steps and the files that add the effect; its reference is in
 //! `literature.bib` already. The test
-//! `recipe::a_new_effect_takes_eight_places_and_is_diagnosed_and_hidden` follows the same steps with the same
+//! `recipe::a_new_estimator_takes_four_files_and_a_new_effect_eight_places` follows the same steps with the same
 //! files in a copy of the workspace.
 //!
 //!     cargo run -p ringdown-lab --example new_effect

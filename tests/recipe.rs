@@ -4,7 +4,7 @@
 use crate::documents::files;
 use crate::support::{root, trainer};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
@@ -146,12 +146,19 @@ fn follow(heading: &str, name: &str, home: &Path, replaced: &[(&str, &str)]) -> 
     String::from_utf8(written.stdout).unwrap()
 }
 
-/// The recipe's command writes the files and lines that the recipe names. The skeleton passes the whole battery, which
-/// sees when its descent is cut short.
+/// Both recipes in one copy, which is compiled once.
 #[test]
-fn a_new_estimator_takes_four_files_and_passes_the_battery() {
+fn a_new_estimator_takes_four_files_and_a_new_effect_eight_places() {
     let scratch = workspace();
     let home = scratch.path();
+    let method = add_an_estimator(home);
+    add_an_effect(home);
+    the_estimator_passes_the_battery(home, &method);
+    the_effect_is_diagnosed_and_hidden(home);
+}
+
+/// The recipe's command writes the files and lines that the recipe names. Returns the file of the method.
+fn add_an_estimator(home: &Path) -> PathBuf {
     let written = follow("Adding an estimator", "short-descent", home, &[]);
     assert!(written.starts_with("short-descent: estimator, which reads the damping"), "{written}");
 
@@ -163,7 +170,11 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
     let has = |file: &str, words: &str| fs::read_to_string(home.join(file)).unwrap().contains(words);
     assert!(has(&manifest[0], &format!("name = \"{}\"", manifest[1])));
     assert!(has(&dependency[0], &dependency[1]) && has(&entry[0], &entry[1].replace('-', "_")));
+    home.join(&method[0])
+}
 
+/// The skeleton passes the whole battery, which sees when its descent is cut short.
+fn the_estimator_passes_the_battery(home: &Path, method: &Path) {
     let battery = test_in(home, "battery", "short-descent::");
     let text = String::from_utf8_lossy(&battery.stdout).into_owned();
     assert!(battery.status.success(), "{text}{}", String::from_utf8_lossy(&battery.stderr));
@@ -171,19 +182,15 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
         text.contains("short-descent::it_agrees_with_least_squares") && text.contains(" 0 failed"),
         "{text}"
     );
-    edit(&home.join(&method[0]), "const STEPS: u64 = 2000;", "const STEPS: u64 = 3;");
+    edit(method, "const STEPS: u64 = 2000;", "const STEPS: u64 = 3;");
     let rough = test_in(home, "battery", "short-descent::it_agrees_with_least_squares");
     assert!(!rough.status.success(), "{}", String::from_utf8_lossy(&rough.stdout));
 }
 
-/// A damping of one's own, from its law to the answer of a diagnosis and to trials that hide it. The gallery, whose command the
-/// recipe names, is left out: it would compile the whole workspace.
-#[test]
-fn a_new_effect_takes_eight_places_and_is_diagnosed_and_hidden() {
-    let scratch = workspace();
-    let home = scratch.path();
+/// A damping of one's own, from its law to the lines of the registries.
+fn add_an_effect(home: &Path) {
+    let before = added(home);
     let file = |name: &str| root().join("tests/recipe").join(name);
-
     let steps = steps("Adding an effect", "sine_drag");
     let places: Vec<_> = steps.iter().map(|step| home.join(&step[0])).collect();
     let [law, laws, registry, candidate, candidates, trial, trials, literature] = &places[..] else {
@@ -210,19 +217,26 @@ fn a_new_effect_takes_eight_places_and_is_diagnosed_and_hidden() {
     // Other effects cite the work already.
     assert!(fs::read_to_string(literature).unwrap().contains("{nayfeh1979,"));
 
-    let (new, longer) = added(home);
+    let (mut new, mut longer) = added(home);
+    new.retain(|name| !before.0.contains(name));
+    longer.retain(|own| !before.1.contains(own));
     assert_eq!(new, [3, 0, 5].map(|step: usize| steps[step][0].as_str()));
     let lines: Vec<usize> = longer.iter().map(|(_, lines)| *lines).collect();
     assert_eq!((longer.len(), lines), (4, vec![2, 2, 1, 2]), "{longer:?}");
+}
+
+/// Tests of a new effect, from its law to the answer of a diagnosis and to trials that hide it. The gallery, whose command the
+/// recipe names, is left out: it would compile the whole workspace.
+fn the_effect_is_diagnosed_and_hidden(home: &Path) {
     let passes = |output: Output, words: &str| {
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
         assert!(text.contains(words), "{text}");
     };
     for (owner, test) in [("diagnosis", "diagnosed"), ("trials", "hidden")] {
-        let tests = home.join("crates").join(owner).join("tests");
+        let (tests, file) = (home.join("crates").join(owner).join("tests"), format!("{test}.rs"));
         fs::create_dir(&tests).unwrap();
-        fs::copy(file(&format!("{test}.rs")), tests.join(format!("sine_drag_{test}.rs"))).unwrap();
+        fs::copy(root().join("tests/recipe").join(file), tests.join(format!("sine_drag_{test}.rs"))).unwrap();
         passes(test_in(home, &format!("sine_drag_{test}"), ""), "1 passed");
     }
     passes(cargo_in(home, &["test", "-p", "dynamics", "--lib", "sine_drag"]), "1 passed");

@@ -93,6 +93,9 @@ const PREDICTED: f64 = 1.2;
 const UNCHANGED: f64 = 1.001;
 const UNLIKELY: f64 = 0.49;
 
+/// Ratio of held-out errors without and with a class from which on the class is needed to predict them.
+const BETTER: f64 = 1.005;
+
 /// Log evidence in nats from which a class is needed whatever the interval of its size. That interval is linearized, and
 /// where a law's shape can undo its size, it says nothing of how much worse the best set without the class is. Of eight
 /// classes whose size may be zero (the forty rigs, 64 of `short`, seeds 95001 and 95002), three of the four above this value
@@ -145,6 +148,9 @@ impl<'a> Inclusion<'a> {
         for row in &mut rows {
             let shown = Shown { evidence: &row.evidence, ratio: row.error_without / row.error_with, most };
             row.probability = probability(&shown, self.sets.left_over);
+            if predicts_no_better(row) {
+                row.probability = row.probability.min(UNLIKELY);
+            }
         }
         let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
         for (place, (row, class)) in rows.iter_mut().zip(&ids).enumerate() {
@@ -372,6 +378,12 @@ impl<'a> Inclusion<'a> {
 
 /// Share of a class below which a kind is not listed.
 const LEAST_SHARE: f64 = 0.005;
+
+/// Returns `true` if held-out parts are predicted as well without a class and half swings do not speak for it either.
+fn predicts_no_better(row: &EffectClass) -> bool {
+    let is_seen = row.evidence.half_swings.is_some_and(|nats| nats > 0.0);
+    !is_seen && row.error_without < BETTER * row.error_with
+}
 
 /// Returns the evidence of half swings for a class, in nats. Only losses count: changes of the duration or
 /// the center often have other causes (training banks).

@@ -182,7 +182,7 @@ impl<'a> Descent<'a> {
 
     fn equations(&self, weights: &[f64]) -> NormalEquations {
         let globals = if self.moving == Moving::All { self.parameters.len() } else { 0 };
-        NormalEquations::of(&self.at, weights, self.hypothesis.hidden_scales(&self.data.facts), globals)
+        NormalEquations::of(&self.at, weights, self.hypothesis.start_sizes(&self.data.facts), globals)
     }
 
     /// Returns `true` if a step moves sizes only and not yet shapes.

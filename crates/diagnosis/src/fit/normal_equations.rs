@@ -7,7 +7,6 @@
 use crate::fit::fitted::Point;
 use crate::matrices::{raised, solve};
 use crate::model::candidate::Parameter;
-use crate::model::hypothesis::VISIBLE;
 use crate::model::predictor::Prediction;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -28,20 +27,19 @@ pub(crate) struct NormalEquations {
     blocks: Vec<Block>,
     globals: DMatrix<f64>,
     right: DVector<f64>,
-    /// Sizes of the hidden state variables.
-    hidden: Vec<Option<f64>>,
+    /// Sizes of the variables of a start state.
+    sizes: Vec<Option<f64>>,
 }
 
 impl NormalEquations {
-    /// Creates the normal equations of weighted segments. `hidden` are the sizes of the hidden state variables
-    /// that start states have.
+    /// Creates the normal equations of weighted segments. `sizes` are those of the variables of a start state.
     pub(crate) fn of(
         predictions: &[Prediction],
         weights: &[f64],
-        hidden: Vec<Option<f64>>,
+        sizes: Vec<Option<f64>>,
         globals: usize,
     ) -> Self {
-        let starts = VISIBLE + hidden.len();
+        let starts = sizes.len();
         let mut total = DMatrix::zeros(globals, globals);
         let mut right = DVector::zeros(globals);
         let mut blocks = Vec::with_capacity(predictions.len());
@@ -57,12 +55,12 @@ impl NormalEquations {
                 squares: weight * prediction.residual.norm_squared(),
             });
         }
-        Self { blocks, globals: total, right, hidden }
+        Self { blocks, globals: total, right, sizes }
     }
 
     /// Returns the factors with which a step of some damping eliminates the start states.
     fn factors(&self, damping: f64) -> Option<Vec<Factors>> {
-        let raised = |block: &Block| raised_start(&block.own, damping, block.squares, &self.hidden);
+        let raised = |block: &Block| raised_start(&block.own, damping, block.squares, &self.sizes);
         self.blocks.iter().map(|block| raised(block).cholesky()).collect()
     }
 
@@ -78,10 +76,14 @@ impl NormalEquations {
         (matrix, right)
     }
 
-    /// Solves for the step of all parameters, with some global parameters held.
-    fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
-        let factors = self.factors(damping)?;
-        let (matrix, right) = self.reduced(damping, &factors);
+    /// Solves for the step of all parameters, with some global parameters held. `factors` eliminate the start states
+    /// from the system of the global ones, `matrix` and `right`.
+    fn step(
+        &self,
+        factors: &[Factors],
+        (matrix, right): &(DMatrix<f64>, DVector<f64>),
+        held: &[bool],
+    ) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
         let free: Vec<usize> =
             held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
         let part = matrix.select_rows(&free).select_columns(&free);
@@ -95,7 +97,7 @@ impl NormalEquations {
         }
         let own =
             |(block, factors): (&Block, &Factors)| factors.solve(&(&block.right - &block.shared * &step));
-        let starts = self.blocks.iter().zip(&factors).map(own).collect();
+        let starts = self.blocks.iter().zip(factors).map(own).collect();
         Some((step, starts))
     }
 
@@ -110,9 +112,11 @@ impl NormalEquations {
         mut held: Vec<bool>,
     ) -> (Option<Point>, f64) {
         let mut promised = f64::INFINITY;
+        let Some(factors) = self.factors(damping) else { return (None, promised) };
+        let reduced = self.reduced(damping, &factors);
         // Each round holds at least one more parameter.
         for _ in 0..=parameters.len() {
-            let Some((step, own)) = self.step(damping, &held) else { break };
+            let Some((step, own)) = self.step(&factors, &reduced, &held) else { break };
             promised = self.promised(&step, &own);
             let mut next = from.clone();
             let mut fresh = false;
@@ -161,10 +165,10 @@ impl NormalEquations {
     }
 }
 
-/// Share of what a segment leaves that a step of a hidden state by its own size costs, without damping.
+/// Share of what a segment leaves that a step of a state variable by its own size costs, without damping.
 const COST: f64 = 0.1;
 
-/// Raises the normal matrix of a start state for a step; `hidden` are the sizes of its hidden state variables.
+/// Raises the normal matrix of a start state for a step; `sizes` are those of its variables, `None` where steps cost nothing.
 ///
 /// A hidden state may hardly show in the samples, as the motion of a second body does while dry friction holds the first
 /// one. Its diagonal entry is then nearly zero, however much it is raised, and the step has no bound. So a step also
@@ -173,10 +177,10 @@ pub(crate) fn raised_start(
     own: &DMatrix<f64>,
     damping: f64,
     squares: f64,
-    hidden: &[Option<f64>],
+    sizes: &[Option<f64>],
 ) -> DMatrix<f64> {
     let mut matrix = raised(own, damping);
-    for (size, at) in hidden.iter().zip(VISIBLE..) {
+    for (at, size) in sizes.iter().enumerate() {
         if let Some(size) = size {
             matrix[(at, at)] += (COST + damping) * squares / (size * size);
         }

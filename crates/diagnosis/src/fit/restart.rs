@@ -50,7 +50,7 @@ pub(crate) fn settle(
     let usual = median(&predictions.iter().map(Prediction::mean_square).collect::<Vec<_>>());
     let all: f64 = predictions.iter().map(|prediction| prediction.residual.norm_squared()).sum();
     let mut simulator = Simulator::new(data, hypothesis, &point.globals, Derivatives::Starts)?;
-    let hidden = hypothesis.hidden_scales(&data.facts);
+    let sizes = hypothesis.start_sizes(&data.facts);
     let mut better = Vec::new();
     for (index, ((segment, start), prediction)) in
         data.segments.iter().zip(&point.starts).zip(predictions).enumerate()
@@ -73,7 +73,7 @@ pub(crate) fn settle(
         let mut least = prediction.residual.norm_squared();
         let (mut best, mut left) = (None, least);
         let mut try_from = |from, at, simulator: &mut Simulator<'_>| {
-            let (found, fitted) = descend(simulator, segment, &hidden, from, at);
+            let (found, fitted) = descend(simulator, segment, &sizes, from, at);
             let squares = fitted.residual.norm_squared();
             if squares < 0.999 * least {
                 (least, best) = (squares, Some(found));
@@ -85,7 +85,7 @@ pub(crate) fn settle(
         }
         // The costly beginning is for segments that no other one brings near the rest.
         if is_behind(left)
-            && let Some(from) = lengthened(&mut simulator, segment, &hidden, &guess, left)
+            && let Some(from) = lengthened(&mut simulator, segment, &sizes, &guess, left)
             && let Ok(at) = simulator.predict(segment, &from)
         {
             try_from(from, at, &mut simulator);
@@ -107,7 +107,7 @@ const FEWEST: usize = 8;
 fn lengthened(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
-    hidden: &[Option<f64>],
+    sizes: &[Option<f64>],
     guess: &[f64],
     known: f64,
 ) -> Option<Vec<f64>> {
@@ -124,7 +124,7 @@ fn lengthened(
             ..segment.clone()
         };
         let at = simulator.predict(&beginning, &start).ok()?;
-        let (found, fitted) = descend(simulator, &beginning, hidden, start, at);
+        let (found, fitted) = descend(simulator, &beginning, sizes, start, at);
         if fitted.residual.norm_squared() > known {
             return None;
         }
@@ -138,7 +138,7 @@ fn lengthened(
 fn descend(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
-    hidden: &[Option<f64>],
+    sizes: &[Option<f64>],
     from: Vec<f64>,
     at: Prediction,
 ) -> (Vec<f64>, Prediction) {
@@ -148,7 +148,7 @@ fn descend(
         let (start, at) = &best;
         let own = at.jacobian.columns(0, start.len());
         let right = own.tr_mul(&at.residual);
-        let matrix = raised_start(&own.tr_mul(&own), damping, at.residual.norm_squared(), hidden);
+        let matrix = raised_start(&own.tr_mul(&own), damping, at.residual.norm_squared(), sizes);
         let Some(solved) = matrix.cholesky() else { break };
         let step = solved.solve(&right);
         if damping <= SHORT && right.dot(&step) <= SMALL * at.residual.norm_squared() {

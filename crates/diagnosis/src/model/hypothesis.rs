@@ -339,10 +339,11 @@ impl Hypothesis {
         VISIBLE + self.known.iter().map(|known| known.candidate.free_hidden().len()).sum::<usize>()
     }
 
-    /// Returns the sizes of the hidden state variables of a segment's start, in their order; `None` for one whose
-    /// steps a fit does not bound.
-    pub(crate) fn hidden_scales(&self, facts: &Scales) -> Vec<Option<f64>> {
-        self.effects().flat_map(|effect| effect.free_hidden()).map(|own| own.scale(facts)).collect()
+    /// Returns the sizes of the variables of a segment's start state, in their order; `None` for one whose steps a fit
+    /// does not bound.
+    pub(crate) fn start_sizes(&self, facts: &Scales) -> Vec<Option<f64>> {
+        let hidden = self.effects().flat_map(|effect| effect.free_hidden()).map(|own| own.scale(facts));
+        [None; VISIBLE].into_iter().chain(hidden).collect()
     }
 
     /// Returns the candidates that count as effects.
