@@ -97,7 +97,8 @@ fn every_shipped_configuration_runs() {
     for path in files("configs", "toml") {
         if path.ends_with("beyond.toml") {
             // The configuration runs even if a record is absent.
-            let quick = ["predict.draws=2", "predict.draws_seeded=1", "predict.max_steps=20"];
+            let problems = "predict.problems=control,dry-friction,quadratic-drag,shipped-record,rig-60";
+            let quick = ["predict.draws=2", "predict.draws_seeded=1", "predict.max_steps=10", problems];
             let (code, result, _) = result(&[&[path.to_str().unwrap()], &quick[..]].concat());
             assert_eq!(code, 0, "{}: {result}", path.display());
             continue;
@@ -110,8 +111,8 @@ fn every_shipped_configuration_runs() {
             continue;
         }
         if text.contains("task = \"learn\"") {
-            let mut quick =
-                vec![path.to_str().unwrap(), "learn.max_steps=2", "bayesian.warm_up=2", "bayesian.draws=10"];
+            let mut quick = vec![path.to_str().unwrap(), "learn.max_steps=2"];
+            quick.extend(["bayesian.warm_up=2", "bayesian.draws=10", "neural-state-space.members=1"]);
             let all = ["learn.toml", "measured.toml", "table.toml"].iter().any(|name| path.ends_with(name));
             // Each learner has its own configuration.
             quick.extend(all.then_some("learn.learners=sindy"));

@@ -21,7 +21,7 @@ def nominal() -> rd.Nominal:
 
 @pytest.fixture(scope="session")
 def record(nominal: rd.Nominal) -> rd.Record:
-    return rd.simulate(nominal, FRICTION, rate_hz=150.0, seconds=12.0, noise=2e-4)
+    return rd.simulate(nominal, FRICTION, rate_hz=100.0, seconds=8.0, noise=2e-4)
 
 
 @pytest.fixture(scope="session")

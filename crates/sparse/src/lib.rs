@@ -11,20 +11,20 @@
 
 mod choice;
 pub mod config;
+mod estimate;
 mod flow;
 mod law;
 mod path;
 mod prediction;
 mod progress;
 mod regression;
-mod report;
 mod scaled;
 mod term;
 
+pub use estimate::Regression;
 pub use law::{Column, Law, running_integral};
 pub use path::Path;
 pub use progress::{Halt, Progress};
 pub use regression::solve;
-pub use report::Regression;
 pub use scaled::Scaled;
 pub use term::Term;

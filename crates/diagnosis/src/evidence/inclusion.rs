@@ -11,7 +11,7 @@ use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::probability::{Shown, probability};
+use crate::evidence::probability::{Shown, predicts_no_better, probability};
 use crate::evidence::weighed_sets::{Left, Records, WeighedSets};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
@@ -88,13 +88,9 @@ const PREDICTED: f64 = 1.2;
 
 /// Ratio of sums of squares below which two errors are the same to three digits, and the largest probability of
 /// a class that changes no error or may have no size. Of 16 such classes in four banks (the forty rigs of another
-/// generator, `short`, seeds 92001 to 92003) four were there, of 557 others that were named 455. A class that predicts held-out parts no better is another matter: where the fits of
-/// parts fail, the whole may still be right, and of 20 such classes with evidence 11 were there.
+/// generator, `short`, seeds 92001 to 92003) four were there, of 557 others that were named 455.
 const UNCHANGED: f64 = 1.001;
 const UNLIKELY: f64 = 0.49;
-
-/// Ratio of held-out errors without and with a class from which on the class is needed to predict them.
-const BETTER: f64 = 1.005;
 
 /// Log evidence in nats from which a class is needed whatever the interval of its size. That interval is linearized, and
 /// where a law's shape can undo its size, it says nothing of how much worse the best set without the class is. Of eight
@@ -148,7 +144,7 @@ impl<'a> Inclusion<'a> {
         for row in &mut rows {
             let shown = Shown { evidence: &row.evidence, ratio: row.error_without / row.error_with, most };
             row.probability = probability(&shown, self.sets.left_over);
-            if predicts_no_better(row) {
+            if predicts_no_better(&shown) {
                 row.probability = row.probability.min(UNLIKELY);
             }
         }
@@ -378,12 +374,6 @@ impl<'a> Inclusion<'a> {
 
 /// Share of a class below which a kind is not listed.
 const LEAST_SHARE: f64 = 0.005;
-
-/// Returns `true` if held-out parts are predicted as well without a class and half swings do not speak for it either.
-fn predicts_no_better(row: &EffectClass) -> bool {
-    let is_seen = row.evidence.half_swings.is_some_and(|nats| nats > 0.0);
-    !is_seen && row.error_without < BETTER * row.error_with
-}
 
 /// Returns the evidence of half swings for a class, in nats. Only losses count: changes of the duration or
 /// the center often have other causes (training banks).
