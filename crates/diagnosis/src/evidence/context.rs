@@ -151,7 +151,7 @@ impl<'a> Context<'a> {
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
         // The rest angle is the first of the moved coefficients.
         let angle = shifted.point.globals[0];
-        let error = (shifted.squares / shifted.freedom() * time * shifted.inverse[(0, 0)]).sqrt();
+        let error = (shifted.variance_with(time) * shifted.inverse[(0, 0)]).sqrt();
         let reach = normal_above(0.025) * error;
         let interval_95 = [torque(angle - reach), torque(angle + reach)];
         Some(Shift { torque: WithInterval { value: torque(angle), interval_95 } })
@@ -164,7 +164,7 @@ impl<'a> Context<'a> {
         let Some(at) = own.calibrated.iter().position(|which| *which == Coefficient::RestAngle) else {
             return false;
         };
-        let variance = repaired.squares / repaired.freedom() * self.time * repaired.inverse[(at, at)];
+        let variance = repaired.variance_with(self.time) * repaired.inverse[(at, at)];
         let moved = repaired.point.globals[at] - own.nominal.rest_angle();
         moved.abs() > normal_above(0.5 * SHIFTED_BY_CHANCE) * variance.sqrt()
     }

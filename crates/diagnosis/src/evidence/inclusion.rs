@@ -141,28 +141,26 @@ impl<'a> Inclusion<'a> {
             .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
         let most = rows.iter().map(|row| row.evidence.replacement).fold(0.0, f64::max);
-        for row in &mut rows {
+        let mut doubted = Vec::new();
+        for (row, class) in rows.iter_mut().zip(&ids) {
             let shown = Shown { evidence: &row.evidence, ratio: row.error_without / row.error_with, most };
-            row.probability = probability(&shown, self.sets.left_over);
-            if predicts_no_better(&shown) {
-                row.probability = row.probability.min(UNLIKELY);
-            }
+            let is_doubted = predicts_no_better(&shown)
+                || self.changes_nothing(*class)
+                || row.evidence.replacement < CONTRADICTED && self.may_be_zero(*class);
+            let most_likely = if is_doubted { UNLIKELY } else { 1.0 };
+            row.probability = probability(&shown, self.sets.left_over).min(most_likely);
+            doubted.push(is_doubted);
         }
         let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
-        for (place, (row, class)) in rows.iter_mut().zip(&ids).enumerate() {
-            for (other, beside) in ids.iter().enumerate().filter(|(other, _)| *other != place) {
-                let (Some(own), Some(rival)) = (known.get(place), known.get(other)) else { continue };
-                let Some(either) = self.either(*class, *beside, most) else { continue };
+        for (place, row) in rows.iter_mut().enumerate().filter(|(place, _)| !doubted[*place]) {
+            for other in (0..ids.len()).filter(|other| *other != place) {
+                let Some(either) = self.either(ids[place], ids[other], most) else { continue };
+                let (own, rival) = (known[place], known[other]);
                 row.probability = row.probability.max(either * own / (own + rival));
                 let is_better = own > rival || own == rival && place < other;
                 if is_better {
                     row.either = Some(row.either.map_or(either, |known| known.max(either)));
                 }
-            }
-            let is_in_doubt = row.evidence.replacement < CONTRADICTED && self.may_be_zero(*class);
-            if is_in_doubt || self.changes_nothing(*class) {
-                row.probability = row.probability.min(UNLIKELY);
-                row.either = None;
             }
         }
         rows

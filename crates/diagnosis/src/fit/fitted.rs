@@ -17,10 +17,14 @@ pub(crate) struct Point {
 }
 
 impl Point {
+    /// Returns how many numbers these are.
+    fn count(&self) -> usize {
+        self.globals.len() + self.starts.iter().map(Vec::len).sum::<usize>()
+    }
+
     /// Returns the degrees of freedom that remain of so many samples, at least 1.
     pub(crate) fn freedom(&self, samples: usize) -> f64 {
-        let starts: usize = self.starts.iter().map(Vec::len).sum();
-        (samples as f64 - starts as f64 - self.globals.len() as f64).max(1.0)
+        (samples as f64 - self.count() as f64).max(1.0)
     }
 }
 
@@ -68,10 +72,16 @@ impl Fit {
         0.5 * worth * libm::log(self.squares.max(f64::MIN_POSITIVE) / squares.max(f64::MIN_POSITIVE))
     }
 
-    /// Returns the factor between [`Self::inverse`] and a covariance: the variance of the residual, times its
-    /// autocorrelation time.
+    /// Returns the factor between [`Self::inverse`] and a covariance: the squares of the residual over its degrees of freedom.
+    /// Of `n` samples with the autocorrelation time `τ`, `n/τ` are independent, and each fitted number takes one of these.
     pub(crate) fn variance(&self) -> f64 {
-        self.squares / self.freedom() * self.autocorrelation_time()
+        self.variance_with(self.autocorrelation_time())
+    }
+
+    /// Returns the same with an autocorrelation time that is known.
+    pub(crate) fn variance_with(&self, time: f64) -> f64 {
+        let independent = self.samples() as f64 / time;
+        self.squares / (independent - self.point.count() as f64).max(1.0)
     }
 
     /// Returns the standard errors of a law's parameters. `fitted` are its fitted parameters, which begin at index `at` of
@@ -105,4 +115,60 @@ pub(crate) fn extended(start: &[f64], hypothesis: &Hypothesis) -> Vec<f64> {
     let along = start.iter().copied().take(2).cycle();
     let missing = hypothesis.start_length().saturating_sub(known.len());
     known.chain(along.take(missing)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fit, Point};
+    use crate::model::hypothesis::Hypothesis;
+    use dynamics::Nominal;
+    use nalgebra::{DMatrix, DVector};
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// Correlation of neighboring errors, number of segments, and samples of each.
+    const CORRELATION: f64 = 0.9;
+    const SEGMENTS: usize = 10;
+    const LENGTH: usize = 100;
+
+    /// Returns the residuals of segments of an AR(1) process of variance 1, less their own means.
+    fn about_means(generator: &mut impl rand::Rng) -> Vec<DVector<f64>> {
+        let mut normal = || -> f64 { StandardNormal.sample(&mut *generator) };
+        let new = libm::sqrt(1.0 - CORRELATION * CORRELATION);
+        let mut error = normal();
+        let segment = |_| {
+            let own = DVector::from_fn(LENGTH, |_, _| {
+                error = CORRELATION * error + new * normal();
+                error
+            });
+            let mean = own.mean();
+            own.add_scalar(-mean)
+        };
+        (0..SEGMENTS).map(segment).collect()
+    }
+
+    /// Ten means of 1,000 samples, which are 53 independent ones, take a fifth of the squares.
+    #[test]
+    fn what_a_fit_takes_of_correlated_errors_is_given_back() {
+        let time = (1.0 + CORRELATION) / (1.0 - CORRELATION);
+        let nominal = Nominal::new(1.0, 0.1, 1.0, 0.0).unwrap();
+        let hypothesis =
+            Hypothesis { nominal, known: Vec::new(), calibrated: Vec::new(), candidates: Vec::new() };
+        let mut generator = seed::Seed::new(1).child("errors").generator();
+        let draws = 400;
+        let variance = |_| {
+            let residuals = about_means(&mut generator);
+            let fit = Fit {
+                hypothesis: hypothesis.clone(),
+                point: Point { globals: Vec::new(), starts: vec![vec![0.0]; SEGMENTS] },
+                squares: residuals.iter().map(DVector::norm_squared).sum(),
+                residuals,
+                converged: true,
+                at_bound: Vec::new(),
+                inverse: DMatrix::zeros(0, 0),
+            };
+            fit.variance_with(time)
+        };
+        let mean = (0..draws).map(variance).sum::<f64>() / f64::from(draws);
+        assert!((mean / time - 1.0).abs() < 0.05, "{mean} instead of {time}");
+    }
 }
