@@ -132,6 +132,18 @@ fn test_in(home: &Path, target: &str, filter: &str) -> Output {
     cargo_in(home, &["test", "--workspace", "--test", target, "--", filter])
 }
 
+/// Checks that a run of tests passes, and that it says certain words.
+fn passes(output: &Output, words: &[&str]) {
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(words.iter().all(|words| text.contains(words)), "{text}");
+}
+
+/// Returns a file of the effect that the recipe adds, from its law to its tests.
+fn of_sine_drag(name: &str) -> PathBuf {
+    root().join("tests/recipe").join(name)
+}
+
 /// Runs the command of a recipe in a copy of the workspace, with a name for NAME and words replaced; returns what it says.
 fn follow(heading: &str, name: &str, home: &Path, replaced: &[(&str, &str)]) -> String {
     let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
@@ -175,22 +187,16 @@ fn add_an_estimator(home: &Path) -> PathBuf {
 
 /// The skeleton passes the whole battery, which sees when its descent is cut short.
 fn the_estimator_passes_the_battery(home: &Path, method: &Path) {
-    let battery = test_in(home, "battery", "short-descent::");
-    let text = String::from_utf8_lossy(&battery.stdout).into_owned();
-    assert!(battery.status.success(), "{text}{}", String::from_utf8_lossy(&battery.stderr));
-    assert!(
-        text.contains("short-descent::it_agrees_with_least_squares") && text.contains(" 0 failed"),
-        "{text}"
-    );
+    let agrees = "short-descent::it_agrees_with_least_squares";
+    passes(&test_in(home, "battery", "short-descent::"), &[agrees, " 0 failed"]);
     edit(method, "const STEPS: u64 = 2000;", "const STEPS: u64 = 3;");
-    let rough = test_in(home, "battery", "short-descent::it_agrees_with_least_squares");
+    let rough = test_in(home, "battery", agrees);
     assert!(!rough.status.success(), "{}", String::from_utf8_lossy(&rough.stdout));
 }
 
 /// A damping of one's own, from its law to the lines of the registries.
 fn add_an_effect(home: &Path) {
     let before = added(home);
-    let file = |name: &str| root().join("tests/recipe").join(name);
     let steps = steps("Adding an effect", "sine_drag");
     let places: Vec<_> = steps.iter().map(|step| home.join(&step[0])).collect();
     let [law, laws, registry, candidate, candidates, trial, trials, literature] = &places[..] else {
@@ -198,12 +204,12 @@ fn add_an_effect(home: &Path) {
     };
     // A line for the new effect below one that there is.
     let below = |path: &Path, line: &str, new: &str| edit(path, line, &format!("{line}\n{new}"));
-    fs::copy(file("law.rs"), law).unwrap();
+    fs::copy(of_sine_drag("law.rs"), law).unwrap();
     below(laws, "mod quadratic_drag;", "mod sine_drag;");
     below(laws, "pub use quadratic_drag::QuadraticDrag;", "pub use sine_drag::SineDrag;");
     below(registry, "    QuadraticDrag,", "    SineDrag,");
 
-    fs::copy(file("candidate.rs"), candidate).unwrap();
+    fs::copy(of_sine_drag("candidate.rs"), candidate).unwrap();
     below(candidates, "pub(crate) mod quadratic_drag;", "pub(crate) mod sine_drag;");
     below(
         candidates,
@@ -211,7 +217,7 @@ fn add_an_effect(home: &Path) {
         "    Candidate::new(&sine_drag::SineDrag),",
     );
 
-    fs::copy(file("trial.rs"), trial).unwrap();
+    fs::copy(of_sine_drag("trial.rs"), trial).unwrap();
     below(trials, "mod quadratic_drag;", "mod sine_drag;");
     below(trials, "    quadratic_drag::EFFECT,", "    sine_drag::EFFECT,");
     // Other effects cite the work already.
@@ -228,19 +234,15 @@ fn add_an_effect(home: &Path) {
 /// Tests of a new effect, from its law to the answer of a diagnosis and to trials that hide it. The gallery, whose command the
 /// recipe names, is left out: it would compile the whole workspace.
 fn the_effect_is_diagnosed_and_hidden(home: &Path) {
-    let passes = |output: Output, words: &str| {
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
-        assert!(text.contains(words), "{text}");
-    };
     for (owner, test) in [("diagnosis", "diagnosed"), ("trials", "hidden")] {
-        let (tests, file) = (home.join("crates").join(owner).join("tests"), format!("{test}.rs"));
+        let tests = home.join("crates").join(owner).join("tests");
         fs::create_dir(&tests).unwrap();
-        fs::copy(root().join("tests/recipe").join(file), tests.join(format!("sine_drag_{test}.rs"))).unwrap();
-        passes(test_in(home, &format!("sine_drag_{test}"), ""), "1 passed");
+        let own = tests.join(format!("sine_drag_{test}.rs"));
+        fs::copy(of_sine_drag(&format!("{test}.rs")), own).unwrap();
+        passes(&test_in(home, &format!("sine_drag_{test}"), ""), &["1 passed"]);
     }
-    passes(cargo_in(home, &["test", "-p", "dynamics", "--lib", "sine_drag"]), "1 passed");
-    passes(test_in(home, "other_simulators", ""), " 0 failed");
+    passes(&cargo_in(home, &["test", "-p", "dynamics", "--lib", "sine_drag"]), &["1 passed"]);
+    passes(&test_in(home, "other_simulators", ""), &[" 0 failed"]);
 }
 
 /// The recipe's own command writes the files that the recipe names, and nothing else, for each kind that it names.
