@@ -13,7 +13,7 @@
 //!   evidence. A class that imitates another effect is small beside it;
 //! - whether no class has evidence: of 191 classes on such records that leave nothing, none was present.
 //!
-//! A class without which held-out parts are predicted as well is not likely by itself, unless half swings show it.
+//! A class without which held-out parts are predicted as well is not likely, unless half swings show it.
 //!
 //! The coefficients maximize the posterior under a weak Gaussian prior (`experiments/rigs/learn.py`), given
 //! 2,165 classes in the answers to 472 rigs: 300 of the bank `short` (seed 50211), 82 of `train` (seed 50212)
