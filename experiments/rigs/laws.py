@@ -147,7 +147,11 @@ class Effect:
             case "stribeck_friction":
                 return [P[SLIDING] * inertia, (P[SLIDING] + P[EXCESS]) * inertia, P[STRIBECK]]
             case "hysteresis":
-                return [P[DAHL] * inertia, P[PRESLIDING]]
+                if P[SHARPNESS] == 0:
+                    return [P[DAHL] * inertia, P[PRESLIDING]]
+                # The vocabulary's state is smaller: it ends at (1 + softening)^(-1/exponent), and not at 1.
+                larger = P[RETURN] ** (-1 / P[SHARPNESS])
+                return [P[DAHL] * inertia * larger, P[PRESLIDING] * larger, 1 / P[RETURN] - 1, P[SHARPNESS]]
             case "cubic_stiffness":
                 return [P[CUBIC] * inertia]
             case "asymmetric_stiffness":

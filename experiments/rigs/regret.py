@@ -24,7 +24,7 @@ from pathlib import Path
 LAWS = {
     "coulomb_friction": ["torque"], "stribeck_friction": ["torque", "static_torque", "velocity"], "quadratic_drag": ["coefficient"],
     "cubic_stiffness": ["coefficient"], "asymmetric_stiffness": ["coefficient"], "gravity": ["torque", "angle"],
-    "constant_torque": ["torque"], "backlash": ["half_width"], "hysteresis": ["torque", "displacement"],
+    "constant_torque": ["torque"], "backlash": ["half_width"], "hysteresis": ["torque", "displacement", "softening", "exponent"],
     "end_stop": ["angle", "stiffness", "dissipation"], "stiffness_drift": ["rate"], "damping_drift": ["rate"],
     "periodic_forcing": ["torque", "frequency", "phase"], "flexible_coupling": ["inertia", "stiffness", "damping"],
     "input_delay": ["delay"], "input_saturation": ["torque"], "sensor_lag": ["time_constant"],

@@ -351,9 +351,11 @@ impl Hypothesis {
         self.candidates.iter().filter(|own| own.counts())
     }
 
-    /// Returns `true` if the hypothesis has an effect of a class.
+    /// Returns `true` if the hypothesis has an effect of a class and no unnamed law that stands for the class: beside
+    /// such a law the effect may have no size at all.
     pub(crate) fn holds(&self, class: EvidenceClass) -> bool {
         self.counted().any(|own| own.evidence_class() == class)
+            && self.counted().all(|own| own.stands_for() != Some(class))
     }
 
     /// Returns `true` if the hypothesis has neither an effect of a class nor an unnamed law that stands for
