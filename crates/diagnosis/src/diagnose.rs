@@ -219,6 +219,28 @@ mod tests {
         assert_eq!(answer.verdict.effects, ["quadratic_drag"]);
     }
 
+    /// Each of the two follows the motion as well as the other, so that neither is needed; one of them is.
+    #[test]
+    fn a_short_delay_that_a_lag_imitates_is_named() {
+        let nominal = Nominal::new(1.0, 1.84, 245.0, 0.0).unwrap();
+        let delay = Active::new("input_delay", &[0.0023]).unwrap();
+        let system = System::new(nominal, vec![delay]).unwrap();
+        let times: Vec<f64> = (0..170).map(|at| 0.021 * f64::from(at)).collect();
+        let torque: Vec<f64> =
+            times.iter().map(|t| 25.0 * (11.0 * t).sin() + 20.0 * (19.0 * t + 1.0).sin()).collect();
+        let input = Input::new(times.clone(), torque.clone(), Hold::Zero).unwrap();
+        let tolerance = Tolerance::default();
+        let motion = simulate(&system, Start::release(0.0), Some(&input), &times, &tolerance).unwrap();
+        let mut generator = Seed::new(6).child("noise").generator();
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        let values = motion.position.iter().map(|x| x + 2e-4 * noise()).collect();
+        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
+        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        let named = answer.verdict.effects;
+        assert!(named == ["input_delay"] || named == ["sensor_lag"], "{named:?}: {:?}", answer.classes);
+    }
+
     /// A torque in steps, read by a sensor with a lag of a sixth of a radian. Between readings the lag is run in
     /// forty steps, each exact for a straight motion.
     #[test]

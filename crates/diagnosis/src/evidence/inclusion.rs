@@ -141,20 +141,18 @@ impl<'a> Inclusion<'a> {
             .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
         let most = rows.iter().map(|row| row.evidence.replacement).fold(0.0, f64::max);
-        // What another class can stand in for is judged with it below; what is nothing by itself stays in doubt.
-        let mut is_nothing = Vec::new();
+        let mut doubted = Vec::new();
         for (row, class) in rows.iter_mut().zip(&ids) {
             let shown = Shown { evidence: &row.evidence, ratio: row.error_without / row.error_with, most };
-            is_nothing.push(
-                self.changes_nothing(*class)
-                    || row.evidence.replacement < CONTRADICTED && self.may_be_zero(*class),
-            );
-            let is_doubted = is_nothing.last() == Some(&true) || predicts_no_better(&shown);
+            let is_doubted = predicts_no_better(&shown)
+                || self.changes_nothing(*class)
+                || row.evidence.replacement < CONTRADICTED && self.may_be_zero(*class);
             let most_likely = if is_doubted { UNLIKELY } else { 1.0 };
             row.probability = probability(&shown, self.sets.left_over).min(most_likely);
+            doubted.push(is_doubted);
         }
         let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
-        for (place, row) in rows.iter_mut().enumerate().filter(|(place, _)| !is_nothing[*place]) {
+        for (place, row) in rows.iter_mut().enumerate().filter(|(place, _)| !doubted[*place]) {
             for other in (0..ids.len()).filter(|other| *other != place) {
                 let Some(either) = self.either(ids[place], ids[other], most) else { continue };
                 let (own, rival) = (known[place], known[other]);
@@ -220,8 +218,7 @@ impl<'a> Inclusion<'a> {
     }
 
     /// Returns the probability that at least one of two classes acts, if they can replace each other: of the
-    /// sets with one of them alone, the best with either differ by no more than [`REPLACED`], and predict held-out
-    /// parts better than the best with neither. `None` otherwise.
+    /// sets with one of them alone, the best with either differ by no more than [`REPLACED`]. `None` otherwise.
     /// `most` is the largest evidence of a class.
     fn either(&self, one: EvidenceClass, other: EvidenceClass, most: f64) -> Option<f64> {
         let with_one = self.first(&|fit| fit.hypothesis.holds(one) && fit.hypothesis.lacks(other))?;
@@ -234,7 +231,7 @@ impl<'a> Inclusion<'a> {
         let replacement = best.0.evidence - neither.0.evidence;
         let evidence = ClassEvidenceRow { replacement, half_swings: None };
         let shown = Shown { evidence: &evidence, ratio: neither.1.error / best.1.error, most };
-        (!predicts_no_better(&shown)).then(|| probability(&shown, self.sets.left_over))
+        Some(probability(&shown, self.sets.left_over))
     }
 
     /// Returns the best set that has a property, with what it leaves.
