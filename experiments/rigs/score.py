@@ -25,6 +25,10 @@ CLASSES = {
     "sensor_quantization": "sensor", "sensor_saturation": "sensor", "sensor_lag": "sensor", "sensor_nonlinearity": "sensor",
     "sensor_drift": "sensor", "outliers": "sensor",
     "timestamp_batching": "stamps", "timestamp_jitter": "stamps", "dropouts": "stamps",
+    # No rig lacks these; an answer may name them.
+    "load_friction": "friction", "friction_drift": "friction", "directional_friction": "friction", "drive_dead_band": "play",
+    "torque_limit": "actuator", "speed_torque_limit": "actuator", "command_derivative": "actuator",
+    "unlisted_damping": "damping", "unlisted_stiffness": "restoring",
 }
 VERDICTS = {"none", "calibration", "unknown"}
 # A class may be named for a law outside the vocabulary if its best member leaves so much of it, in floors or of its size.
