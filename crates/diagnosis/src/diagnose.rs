@@ -152,12 +152,28 @@ pub fn diagnose_watched(
 
 #[cfg(test)]
 mod tests {
-    use crate::{Observations, Settings, diagnose};
+    use crate::{Diagnosis, Observations, Settings, diagnose};
     use dynamics::reference::{Tolerance, simulate};
     use dynamics::{Active, Coordinate, Hold, Input, Nominal, Start, System};
     use rand_distr::{Distribution, StandardNormal};
     use record::{Clock, ClockChoice, Quantity, Record};
     use seed::Seed;
+
+    /// Diagnoses exact readings of an angle under a torque, with noise of a size.
+    fn answer(
+        nominal: &Nominal,
+        times: Vec<f64>,
+        torque: Vec<f64>,
+        exact: &[f64],
+        (size, seed): (f64, u64),
+    ) -> Diagnosis {
+        let mut generator = Seed::new(seed).child("noise").generator();
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        let values = exact.iter().map(|x| x + size * noise()).collect();
+        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
+        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+        diagnose(&[observed], nominal, &Settings::default(), &|| 0.0).unwrap()
+    }
 
     /// Diagnoses a stiffening spring under chirps of the given forces, logged exactly. Returns the names, and
     /// the repaired simulator's error over the noise.
@@ -210,12 +226,7 @@ mod tests {
         let input = Input::new(times.clone(), torque.clone(), Hold::Zero).unwrap();
         let tolerance = Tolerance::default();
         let motion = simulate(&system, Start::release(0.5), Some(&input), &times, &tolerance).unwrap();
-        let mut generator = Seed::new(4).child("noise").generator();
-        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
-        let values = motion.position.iter().map(|x| x + 2e-4 * noise()).collect();
-        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
-        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
-        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        let answer = answer(&nominal, times, torque, &motion.position, (2e-4, 4));
         assert_eq!(answer.verdict.effects, ["quadratic_drag"]);
     }
 
@@ -231,12 +242,7 @@ mod tests {
         let input = Input::new(times.clone(), torque.clone(), Hold::Zero).unwrap();
         let tolerance = Tolerance::default();
         let motion = simulate(&system, Start::release(0.0), Some(&input), &times, &tolerance).unwrap();
-        let mut generator = Seed::new(6).child("noise").generator();
-        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
-        let values = motion.position.iter().map(|x| x + 2e-4 * noise()).collect();
-        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
-        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
-        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        let answer = answer(&nominal, times, torque, &motion.position, (2e-4, 6));
         let named = answer.verdict.effects;
         assert!(named == ["input_delay"] || named == ["sensor_lag"], "{named:?}: {:?}", answer.classes);
     }
@@ -262,12 +268,7 @@ mod tests {
             reading
         });
         let read: Vec<f64> = std::iter::once(0.0).chain(read).step_by(40).collect();
-        let mut generator = Seed::new(5).child("noise").generator();
-        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
-        let values = read.iter().map(|x| x + 1e-3 * noise()).collect();
-        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
-        let observed = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
-        let answer = diagnose(&[observed], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        let answer = answer(&nominal, times, torque, &read, (1e-3, 5));
         assert_eq!(answer.verdict.effects, ["sensor_lag"]);
         let found = answer.effects.iter().find(|row| row.id == "sensor_lag").unwrap();
         let found = found.parameters.first().unwrap().estimate.value;

@@ -208,8 +208,8 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
 /// Returns `true` if a set leaves so much more than noise that something must be missing from it. Where a swing has few
 /// samples, what the recalibrated simulator leaves passes for noise, and a closer set shows how little of it is.
 fn leaves_more(data: &Data, set: &Fit) -> bool {
-    let noise = data.facts.noise.min(floor(data, &set.residuals).value);
-    (set.squares / set.freedom()).sqrt() > LEFT * data.facts.with_drive(noise)
+    let exceeds = |noise: f64| (set.squares / set.freedom()).sqrt() > LEFT * data.facts.with_drive(noise);
+    exceeds(data.facts.noise) || exceeds(floor(data, &set.residuals).value)
 }
 
 /// Returns the sets to expand next: the best one of each size. If all of these are expanded already, the next
