@@ -242,9 +242,12 @@ mod tests {
         let input = Input::new(times.clone(), torque.clone(), Hold::Zero).unwrap();
         let tolerance = Tolerance::default();
         let motion = simulate(&system, Start::release(0.0), Some(&input), &times, &tolerance).unwrap();
-        let answer = answer(&nominal, times, torque, &motion.position, (2e-4, 6));
-        let named = answer.verdict.effects;
-        assert!(named == ["input_delay"] || named == ["sensor_lag"], "{named:?}: {:?}", answer.classes);
+        for noise in [(2e-4, 1), (2e-4, 6), (4e-4, 4)] {
+            let answer = answer(&nominal, times.clone(), torque.clone(), &motion.position, noise);
+            let named = answer.verdict.effects;
+            let is_told = named == ["input_delay"] || named == ["sensor_lag"];
+            assert!(is_told, "{noise:?}: {named:?}: {:?}", answer.classes);
+        }
     }
 
     /// A torque in steps, read by a sensor with a lag of a sixth of a radian. Between readings the lag is run in
