@@ -20,7 +20,7 @@ mod line;
 mod subject;
 
 pub use calibration::{Calibration, calibration};
-pub use checks::CHECKS;
+pub use checks::{CHECKS, agrees_from_another_seed};
 pub use cohort::{Cohort, Coverage, coverage};
 pub use envelopes::{bent, exponential, scattered};
 pub use line::{Line, least_squares};

@@ -27,14 +27,37 @@ pub struct Subject<'a> {
 /// Steps of an amortized estimator in checks that need a separate training but not its result.
 const FEW_STEPS: u64 = 10;
 
+/// Envelopes on which an amortized estimator of few steps is calibrated.
+const FEW_CALIBRATIONS: u64 = 100;
+
 impl<'a> Subject<'a> {
     /// Builds the estimator with its default settings.
     ///
     /// # Errors
     /// Error of the build; every estimator has to build from its defaults.
     pub fn new(entry: &'a Entry) -> Result<Self, SettingsError> {
+        Self::with(entry, &[])
+    }
+
+    /// Builds an amortized estimator whose training has few steps and few envelopes to calibrate on, so that it runs to its end
+    /// in a second.
+    ///
+    /// # Errors
+    /// Error of the build.
+    pub fn brief(entry: &'a Entry) -> Result<Self, SettingsError> {
+        Self::with(entry, &[("max_steps", FEW_STEPS), ("calibration", FEW_CALIBRATIONS)])
+    }
+
+    /// Builds the estimator with numbers for those of its settings that it has.
+    fn with(entry: &'a Entry, numbers: &[(&str, u64)]) -> Result<Self, SettingsError> {
         let section = [Section { name: "estimator", fields: entry.fields }];
-        let resolved = Resolved::new(&Document::default(), &section)?;
+        let mut document = Document::default();
+        for (key, number) in
+            numbers.iter().filter(|(key, _)| entry.fields.iter().any(|field| field.key == *key))
+        {
+            document.apply_override(&format!("estimator.{key}={number}"))?;
+        }
+        let resolved = Resolved::new(&document, &section)?;
         let estimator = (entry.build)(&resolved)?;
         Ok(Self { entry, estimator, pretrained: Done::default(), fitted: Done::default() })
     }

@@ -114,10 +114,6 @@ impl Skilled for AmortizedLstmConfig {
 }
 
 #[cfg(test)]
-#[path = "../../../neural/testing/fresh_envelopes.rs"]
-mod fresh_envelopes;
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use neural::{device, values};
