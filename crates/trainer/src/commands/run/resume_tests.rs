@@ -18,13 +18,13 @@ use tempfile::TempDir;
 
 static NOBODY: Cancel = Cancel::new();
 
-/// Writes the first five seconds of the shipped record beside a run's folder: each of a thousand runs reads
+/// Writes the first two seconds of the shipped record beside a run's folder: each of a thousand runs reads
 /// and draws them.
 fn record(root: &Path, out: &Path) -> PathBuf {
     let path = out.with_file_name("record.csv");
     if !path.exists() {
         let shipped = std::fs::read_to_string(root.join("experiments/default-record/record.csv")).unwrap();
-        let begin: Vec<&str> = shipped.lines().take(1500).collect();
+        let begin: Vec<&str> = shipped.lines().take(500).collect();
         std::fs::write(&path, begin.join("\n")).unwrap();
     }
     path
@@ -96,9 +96,10 @@ fn forget_seconds(value: &mut Value) {
     }
 }
 
-/// Lets every operation of a run fail in turn, either once or from then on. Every file that exists afterwards
+/// Lets operations of a run fail in turn, every so many of them once and every so many from then on. A file is written by five
+/// operations, so that steps that are no multiple of five meet each kind. Every file that exists afterwards
 /// is whole, the message names a file, and the run resumed on a sound disk ends as an undisturbed one.
-fn fails_anywhere_and_is_resumed(overrides: &[&str], stride: usize, refusals: &[(Refusal, Lasts)]) {
+fn fails_anywhere_and_is_resumed(overrides: &[&str], once: usize, for_good: usize) {
     let root = scratch();
     let sound = root.path().join("sound");
     let faults = Arc::new(Faults::none());
@@ -107,7 +108,9 @@ fn fails_anywhere_and_is_resumed(overrides: &[&str], stride: usize, refusals: &[
     let operations = faults.asked();
     assert!(operations > 60, "{operations}");
     assert!(!sound.join("checkpoints").exists());
-    for &(refusal, lasts) in refusals {
+    for (refusal, lasts, stride) in
+        [(Refusal::Device, Lasts::Once, once), (Refusal::Full, Lasts::ForGood, for_good)]
+    {
         for first in (0..operations).step_by(stride) {
             let out = root.path().join(format!("{refusal:?}-{lasts:?}-{first}"));
             let disk = Disk::failing(Arc::new(Faults::new(first, refusal, lasts)));
@@ -136,16 +139,14 @@ fn fails_anywhere_and_is_resumed(overrides: &[&str], stride: usize, refusals: &[
     }
 }
 
-const BOTH: [(Refusal, Lasts); 2] = [(Refusal::Device, Lasts::Once), (Refusal::Full, Lasts::ForGood)];
-
 #[test]
 fn an_estimation_survives_every_operation_of_the_disk_failing() {
-    fails_anywhere_and_is_resumed(ESTIMATION, 1, &BOTH);
+    fails_anywhere_and_is_resumed(ESTIMATION, 1, 3);
 }
 
 #[test]
 fn a_comparison_survives_a_failing_disk() {
-    fails_anywhere_and_is_resumed(COMPARISON, 3, &BOTH);
+    fails_anywhere_and_is_resumed(COMPARISON, 4, 7);
 }
 
 /// A disk that fails while a run is resumed does no more harm.
@@ -155,10 +156,12 @@ fn resuming_survives_every_operation_of_the_disk_failing() {
     let sound = root.path().join("sound");
     run(ESTIMATION, &sound, false, &Disk::default()).unwrap();
     let expected = timeless(&sound);
+    let half = root.path().join("half");
+    let killed = Disk::failing(Arc::new(Faults::new(60, Refusal::Device, Lasts::ForGood)));
+    run(ESTIMATION, &half, false, &killed).unwrap_err();
     let begun = |name: &str| {
         let out = root.path().join(name);
-        let killed = Disk::failing(Arc::new(Faults::new(60, Refusal::Device, Lasts::ForGood)));
-        run(ESTIMATION, &out, false, &killed).unwrap_err();
+        copied(&half, &out);
         out
     };
     let faults = Arc::new(Faults::none());
