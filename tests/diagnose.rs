@@ -465,7 +465,7 @@ fn help_shows_examples_and_how_columns_are_found() {
 
 #[test]
 fn an_effect_that_is_not_considered_is_not_named() {
-    let (_scratch, record, nominal) = simulated(&[]);
+    let (_scratch, record, nominal) = simulated(&["record.seconds=4"]);
     let arguments = ["diagnose", &record, "--nominal", &nominal, "--json", "--quiet"];
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("answer");

@@ -25,7 +25,7 @@ fn envelope(record: &Path) -> Envelope {
 }
 
 /// Steps after which a fit ends: a leak would show in the first steps. Tests with whole fits run on request.
-const FEW_STEPS: Option<u64> = Some(20);
+const FEW_STEPS: Option<u64> = Some(5);
 
 /// Methods, each with the bits of its λ.
 type Bits = Vec<(String, u64)>;

@@ -4,7 +4,7 @@
 
 use crate::browser::chromium::{Chromium, VIEWS, View};
 use crate::field::{LOGS, field, look};
-use crate::support::{number, root, simulated, trainer};
+use crate::support::{Shipped, number, root, simulated, trainer};
 use report::format::with_uncertainty;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
@@ -191,7 +191,7 @@ fn the_shipped_record_is_diagnosed_as_by_the_program() {
     assert!(page.text("dl.key").contains("3.461333"), "{}", page.text("dl.key"));
     let found = page.diagnosis();
     let mut apart = Vec::new();
-    differences(&found, &by_the_program(&[&record], &nominal), "", &mut apart);
+    differences(&found, &Shipped::get().answer(), "", &mut apart);
     assert!(apart.is_empty(), "{} numbers differ:\n{}", apart.len(), apart.join("\n"));
     let report =
         "document.getElementById('report').contentDocument.querySelector('.verdict .label')?.textContent";
@@ -217,7 +217,7 @@ fn the_shipped_record_is_diagnosed_as_by_the_program() {
     page.is_quiet();
 }
 
-/// Three records of a driven joint at once.
+/// Two records of a driven joint at once.
 #[test]
 fn driven_records_are_diagnosed_together_as_by_the_program() {
     let Some(mut page) = Page::open() else { return };
@@ -225,12 +225,12 @@ fn driven_records_are_diagnosed_together_as_by_the_program() {
     let more = "input_gain = 1.0\nrecord.rate_hz = 130.0\nrecord.seconds = 6.0\nstart.position = 0.1\nsensor.noise = 1e-3\n\
                 input.waveform = \"chirp\"\ninput.amplitude = 90.0\ninput.frequency_hz = 1.0\ninput.end_frequency_hz = 6.0\n\
                 [[effects]]\nid = \"coulomb_friction\"\nparameters.torque = 9.0\n";
-    let file = simulated(scratch.path(), more, &["simulate.records=3"]);
-    let records = [0, 1, 2].map(|number| PathBuf::from(file(&format!("record-00{number}.csv"))));
+    let file = simulated(scratch.path(), more, &["simulate.records=2"]);
+    let records = [0, 1].map(|number| PathBuf::from(file(&format!("record-00{number}.csv"))));
     let records: Vec<&Path> = records.iter().map(PathBuf::as_path).collect();
     let nominal = PathBuf::from(file("nominal.toml"));
     page.drop(&[&records[..], &[&nominal]].concat());
-    assert_eq!(page.browser.evaluate("document.querySelectorAll('#logs article').length"), 3);
+    assert_eq!(page.browser.evaluate("document.querySelectorAll('#logs article').length"), 2);
     assert_eq!(page.browser.evaluate("document.getElementById('estimate').hidden"), true);
     let found = page.diagnosis();
     let mut apart = Vec::new();

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 use tempfile::TempDir;
 
 /// Returns the root of the workspace.
@@ -44,6 +45,53 @@ pub(crate) fn result(arguments: &[&str]) -> (i32, Value, TempDir) {
     let value = serde_json::from_str(&text)
         .unwrap_or_else(|error| panic!("{error}: {text} {}", String::from_utf8_lossy(&output.stderr)));
     (output.status.code().unwrap(), value, folder)
+}
+
+/// Diagnosis of the shipped record by the program with its defaults, made once for all tests that read it.
+pub(crate) struct Shipped {
+    /// Text on standard output.
+    pub(crate) said: String,
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+impl Shipped {
+    /// Name of its folder, which is the title of its page.
+    const NAME: &str = "shipped";
+
+    /// Returns the diagnosis.
+    pub(crate) fn get() -> &'static Self {
+        static MADE: LazyLock<Shipped> = LazyLock::new(|| {
+            let shipped = root().join("experiments/default-record");
+            let [record, nominal] =
+                ["record.csv", "nominal.toml"].map(|name| shipped.join(name).display().to_string());
+            let scratch = tempfile::tempdir().unwrap();
+            let folder = scratch.path().join(Shipped::NAME);
+            let out = folder.to_str().unwrap();
+            let output = trainer(&["diagnose", &record, "--nominal", &nominal, "--out", out]);
+            assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+            let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+            let files =
+                files.map(|file| (file.file_name().into(), std::fs::read(file.path()).unwrap())).collect();
+            Shipped { said: String::from_utf8(output.stdout).unwrap(), files }
+        });
+        &MADE
+    }
+
+    /// Returns the content of `diagnosis.json`.
+    pub(crate) fn answer(&self) -> Value {
+        let file = self.files.iter().find(|(name, _)| name == Path::new("diagnosis.json")).unwrap();
+        serde_json::from_slice(&file.1).unwrap()
+    }
+
+    /// Copies the folder of the answer below another one, and returns its path there.
+    pub(crate) fn copy_below(&self, above: &Path) -> PathBuf {
+        let folder = above.join(Self::NAME);
+        std::fs::create_dir_all(&folder).unwrap();
+        for (name, bytes) in &self.files {
+            std::fs::write(folder.join(name), bytes).unwrap();
+        }
+        folder
+    }
 }
 
 /// Returns the path of a measured record beside the project. `None`, with a notice, if it is absent. The
