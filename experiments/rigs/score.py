@@ -144,9 +144,11 @@ def table(cases):
         rows.append((f"{label}: of classes, every one", calibration(marginals(some, False)[0])))
     for label, some in (("composite", composite), ("single and pair", apart)):
         for low, high in ((1, 4), (4, 10), (10, 30), (30, math.inf)):
-            hits = [effect["class"] in case.named_classes for case in some for effect in case.effects
-                    if low <= effect["floors"] < high]
-            rows.append((f"{label}: class recall at {low}–{high} floors", share(hits)))
+            within = [(case, effect) for case in some for effect in case.effects if low <= effect["floors"] < high]
+            told = [(case, effect) for case, effect in within if effect["id"] != "constant_torque"]
+            recall = lambda pairs: share(effect["class"] in case.named_classes for case, effect in pairs)
+            rows.append((f"{label}: class recall at {low}–{high} floors", recall(within)))
+            rows.append((f"{label}: the same, without constant torques", recall(told)))
         hits = [CLASSES.get(name, name) in case.present | case.open for case in some for name in case.named]
         rows.append((f"{label}: precision of names, by class", share(hits)))
     first = lambda case: bool(case.named) and case.named[0] == case.effects[0]["id"]
