@@ -142,13 +142,13 @@ def table(cases):
         rows.append((f"{label}: calibration error of classes, listed", calibration(classes)))
         rows.append((f"{label}: calibration error of effects, listed", calibration(effects)))
         rows.append((f"{label}: of classes, every one", calibration(marginals(some, False)[0])))
+    recall = lambda pairs: share(effect["class"] in case.named_classes for case, effect in pairs)
     for label, some in (("composite", composite), ("single and pair", apart)):
         for low, high in ((1, 4), (4, 10), (10, 30), (30, math.inf)):
             within = [(case, effect) for case in some for effect in case.effects if low <= effect["floors"] < high]
-            told = [(case, effect) for case, effect in within if effect["id"] != "constant_torque"]
-            recall = lambda pairs: share(effect["class"] in case.named_classes for case, effect in pairs)
             rows.append((f"{label}: class recall at {low}–{high} floors", recall(within)))
-            rows.append((f"{label}: the same, without constant torques", recall(told)))
+            rows.append((f"{label}: the same, without constant torques",
+                         recall(pair for pair in within if pair[1]["id"] != "constant_torque")))
         hits = [CLASSES.get(name, name) in case.present | case.open for case in some for name in case.named]
         rows.append((f"{label}: precision of names, by class", share(hits)))
     first = lambda case: bool(case.named) and case.named[0] == case.effects[0]["id"]

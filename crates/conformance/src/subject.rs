@@ -19,6 +19,8 @@ type Reader = Option<Box<dyn Estimator>>;
 pub struct Subject<'a> {
     /// Registry entry of the estimator.
     pub entry: &'a Entry,
+    /// Its settings, in the section `estimator`.
+    pub settings: Resolved,
     estimator: Box<dyn Estimator>,
     pretrained: Done<Course, Result<Reader, FitError>>,
     fitted: Done<(Vec<u64>, Course), Result<Estimate, FitError>>,
@@ -57,9 +59,9 @@ impl<'a> Subject<'a> {
         {
             document.apply_override(&format!("estimator.{key}={number}"))?;
         }
-        let resolved = Resolved::new(&document, &section)?;
-        let estimator = (entry.build)(&resolved)?;
-        Ok(Self { entry, estimator, pretrained: Done::default(), fitted: Done::default() })
+        let settings = Resolved::new(&document, &section)?;
+        let estimator = (entry.build)(&settings)?;
+        Ok(Self { entry, settings, estimator, pretrained: Done::default(), fitted: Done::default() })
     }
 
     /// Fits an envelope with a seed and a cap on the steps, and predicts at [`query_times`]. Each distinct

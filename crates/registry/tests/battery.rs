@@ -17,7 +17,6 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use neural::amortized::Prior;
 use registry::ESTIMATORS;
 use seed::Seed;
-use settings::{Document, Resolved, Section};
 use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -57,9 +56,6 @@ const fn on_noise(estimator: &'static str, reason: &'static str) -> Waiver {
 const SHORT: u64 = 40;
 const LONG: u64 = 1000;
 
-/// First check for which an amortized network trains to its end.
-const TRAINS: &str = "odd_envelopes_give_numbers_or_typed_errors";
-
 /// Largest distance from 95 % in the long test; the short one is allowed three standard errors.
 const COVERAGE_BAR: f64 = 0.015;
 
@@ -79,11 +75,7 @@ fn main() -> ExitCode {
         let is_amortized = entry.has(Tag::Amortized);
         for check in CHECKS.iter().filter(|check| (check.applies)(entry)) {
             let subject = Arc::clone(&subject);
-            let place = match is_amortized {
-                true if check.name == TRAINS => &mut first,
-                true => &mut last,
-                false => &mut trials,
-            };
+            let place = if is_amortized { &mut last } else { &mut trials };
             place.push(Trial::test(format!("{}::{}", entry.id, check.name), move || {
                 if let Some(remark) = verdict(check, &subject, WAIVERS)? {
                     println!("{}: {}: {remark}", entry.id, check.name);
@@ -95,7 +87,7 @@ fn main() -> ExitCode {
             let name =
                 format!("{}::on_fresh_envelopes_it_is_as_good_as_least_squares_and_calibrated", entry.id);
             let fresh = Arc::clone(&subject);
-            last.push(Trial::test(name, move || reads_fresh_envelopes(&fresh)));
+            first.push(Trial::test(name, move || reads_fresh_envelopes(&fresh)));
             let name = format!("{}::it_agrees_with_least_squares_from_another_seed", entry.id);
             let other = Arc::clone(&subject);
             let agrees = move || agrees_from_another_seed(&other).map_err(Failed::from);
@@ -142,8 +134,7 @@ fn covers(subject: &Subject<'_>, envelopes: u64) -> Result<(), Failed> {
 /// Checks an amortized network, trained with the default settings, on a thousand envelopes drawn from its prior on a branch of
 /// the seed that it was not trained on; the number of peaks of each is drawn as well.
 fn reads_fresh_envelopes(subject: &Subject<'_>) -> Result<(), Failed> {
-    let section = [Section { name: "estimator", fields: subject.entry.fields }];
-    let prior: Prior = Resolved::new(&Document::default(), &section)?.section("estimator")?;
+    let prior: Prior = subject.settings.section("estimator")?;
     let mut generator = Seed::new(0).child("fresh").generator();
     let (mut own, mut best, mut held) = (0.0, 0.0, 0);
     for _ in 0..1000 {
